@@ -11,10 +11,9 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.runs.cache import open_table_cache
-from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.plan import options_of
 from rockwobble.compare.runs.progress import FailedTask, IncompleteError, ProgressCallback
-from rockwobble.compare.runs.scheduler import run_tasks
+from rockwobble.compare.runs.scheduler import ClusterError, run_tasks
 from rockwobble.compare.storage.provenance import fingerprint, reduced_makers, result_fingerprint
 from rockwobble.compare.storage.results import Results
 from rockwobble.models.plain_json import plain

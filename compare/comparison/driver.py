@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 
 from rockwobble.models import AGREEMENT, Case, Run, Suite, Trace
@@ -21,7 +22,7 @@ from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions
 from .budget import ErrorBudget, case_budgets
 from .peak_error import copies_of_input, peak_error
-from .prediction import Prediction, Simulate, estimated_error, measured_error, predict
+from .prediction import Simulate, estimated_error, measured_error, predict
 from .result import Comparison, comparison_of
 from .summary import KEYS, SUMMARY_COLUMNS, external_row, lost_row, summary_row
 
@@ -215,19 +216,17 @@ def comparison_row(
         times.extend([trace.wall_time] if run == reference.run else [])
         return trace
 
-    def own_prediction(tolerance: float) -> Prediction:
-        return predict(
-            case,
-            reference=reference,
-            own=own,
-            contact_resolution=trial.contact_resolution,
-            error=error,
-            simulate=timed,
-            tolerance=tolerance,
-        )
-
+    own_prediction = partial(
+        predict,
+        case,
+        reference=reference,
+        own=own,
+        contact_resolution=trial.contact_resolution,
+        error=error,
+        simulate=timed,
+    )
     copies = [timed(copy, own.run) for copy in copies_of_input(case)]
-    prediction, tolerance = own_prediction(AGREEMENT), tolerance_of(reference, trial)
+    prediction, tolerance = own_prediction(), tolerance_of(reference, trial)
     return summary_row(
         case,
         name,
@@ -235,7 +234,7 @@ def comparison_row(
         label,
         trial,
         prediction=prediction,
-        within=own_prediction(tolerance) if tolerance < AGREEMENT else prediction,
+        within=own_prediction(tolerance=tolerance) if tolerance < AGREEMENT else prediction,
         estimated_error=error,
         until=until,
         reference_time=min(times),

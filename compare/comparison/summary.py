@@ -7,9 +7,9 @@ external trajectories.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import permutations
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 import numpy as np
 
@@ -217,57 +217,9 @@ def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
 
 
 class SummaryRow(ExternalSummaryRow, Protocol):
-    """A row of the summary, a table beside it, or the agreement matrix: what findings and pages read."""
+    """A row of the summary, a table beside it, or the agreement matrix, by the names of its columns."""
 
-    case: str
-    run: str
-    engine: str
-    support: str
-    outcome: str
-    mode: str
-    reference_mode: str
-    diverged: bool
-    divergence: str
-    agreement_time: float
-    left_tolerance: bool
-    tolerance: float
-    tilt_bound: float
-    within_tolerance_until: float
-    predicted_agreement_time: float
-    predicted_until: float
-    predicted_by: str
-    closest_pass: float
-    peak_tilt: float
-    peak_tilt_difference: float
-    reference: str
-    reference_engine: str
-    reference_support: str
-    reference_outcome: str
-    reference_peak_tilt: float
-    reference_uplift_time: float
-    other_uplift_time: float
-    uplift_time_difference: float
-    uplift_time_uncertainty: float
-    time_ratio: float
-    largest_tilt_difference: float
-    largest_contact_difference: float
-    largest_turn_difference: float
-    not_split: str
-    uplift_direction_difference: float
-    uplift_direction_uncertainty: float
-    unexplained_share: float
-    whole_rms: float
-    limit_error: float
-    differs_in: Sequence[str]
-    not_compared: Sequence[str]
-    likely_mistake: Sequence[str]
-    likely_mistake_in: Sequence[str]
-    agreement_without_mistake: float
-    differs_without_mistake: Sequence[str]
-    finding: bool
-    worth: bool
-
-    def _asdict(self) -> dict[str, object]: ...
+    def __getattr__(self, column: str, /) -> Any: ...
 
 
 def rows_of(table: pd.DataFrame) -> Iterator[SummaryRow]:

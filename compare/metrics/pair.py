@@ -122,20 +122,12 @@ def make_pair(cylinder: RockingBody, reference: Trace, trial: Trace, *, until: f
     if keep == 0:
         raise ValueError(f"there must be at least one sample to compare, got none up to {end:g} s")
     time = reference.time[:keep]
-    return Pair(
-        cylinder=cylinder,
-        start=start_of(reference),
-        time=time,
-        tilt=_resample(trial.time, trial.tilt, time),
-        reference_tilt=reference.tilt[:keep],
-        rolling_angle=_resample(trial.time, trial.rolling_angle, time),
-        reference_rolling_angle=reference.rolling_angle[:keep],
-        contact_point=_resample(trial.time, trial.contact_point, time),
-        reference_contact_point=reference.contact_point[:keep],
-        displacement=_resample(trial.time, trial.displacement, time),
-        reference_displacement=reference.displacement[:keep],
-        slides_by=reference.peak_displacement if reference.mode == SLIDES else 0.0,
-    )
+    fields: dict[str, FloatArray] = {}
+    for name in ("tilt", "rolling_angle", "contact_point", "displacement"):
+        fields[name] = _resample(trial.time, getattr(trial, name), time)
+        fields[f"reference_{name}"] = getattr(reference, name)[:keep]
+    slides_by = reference.peak_displacement if reference.mode == SLIDES else 0.0
+    return Pair(cylinder=cylinder, start=start_of(reference), time=time, slides_by=slides_by, **fields)
 
 
 def start_of(trace: Trace) -> float:

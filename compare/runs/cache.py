@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypedDict, TypeVar
 
@@ -23,6 +24,7 @@ R = TypeVar("R")
 _PLAN = "tasks.json"  # there only until all tasks are done
 
 
+@dataclass(slots=True, kw_only=True, eq=False)
 class Cache(Generic[T, R]):
     """The folder finished/KIND in a folder of results: one file for each finished task.
 
@@ -47,21 +49,18 @@ class Cache(Generic[T, R]):
         Files that were asked for and are not what was written: their tasks run again.
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        kind: str,
-        *,
-        name: Callable[[T], str],
-        pack: Callable[[T, R], bytes],
-        unpack: Callable[[T, bytes], R],
-    ) -> None:
-        self._folder, self._kind = folder, kind
-        self._name, self._pack, self._unpack = name, pack, unpack
-        self._there = {path.stem.partition("-")[0]: path for path in folder.glob("*.parquet")}
-        self._used: set[Path] = set()
-        self._expected = 0
-        self.damaged: list[Path] = []
+    folder: Path
+    kind: str
+    name: Callable[[T], str]
+    pack: Callable[[T, R], bytes]
+    unpack: Callable[[T, bytes], R]
+    damaged: list[Path] = field(default_factory=list, init=False)
+    _there: dict[str, Path] = field(init=False)
+    _used: set[Path] = field(default_factory=set, init=False)
+    _expected: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self._there = {path.stem.partition("-")[0]: path for path in self.folder.glob("*.parquet")}
 
     @property
     def count(self) -> int:
@@ -70,13 +69,13 @@ class Cache(Generic[T, R]):
 
     def find(self, task: T) -> R | None:
         """Return the result of a task if it is there and whole; what is damaged runs again."""
-        path = self._there.get(self._name(task))
+        path = self._there.get(self.name(task))
         if path is None:
             return None
         try:
             content = path.read_bytes()
             if path.stem.partition("-")[2] == _digest(content):
-                result = self._unpack(task, content)
+                result = self.unpack(task, content)
                 self._used.add(path)
                 return result
         except (OSError, ValueError):
@@ -92,8 +91,8 @@ class Cache(Generic[T, R]):
         ValueError
             If it cannot be written.
         """
-        key, content = self._name(task), self._pack(task, result)
-        path = self._folder / f"{key}-{_digest(content)}.parquet"
+        key, content = self.name(task), self.pack(task, result)
+        path = self.folder / f"{key}-{_digest(content)}.parquet"
         write_whole(path, content)
         if (before := self._there.get(key, path)) != path:
             before.unlink(missing_ok=True)
@@ -104,14 +103,14 @@ class Cache(Generic[T, R]):
         """Note the number of tasks to come, at least, from which the share that is finished follows."""
         if count > self._expected:
             self._expected = count
-            plan = {"kind": self._kind, "total": count}
-            write_whole(self._folder / _PLAN, plain_json.dumps(plan).encode())
+            plan = {"kind": self.kind, "total": count}
+            write_whole(self.folder / _PLAN, plain_json.dumps(plan).encode())
 
     def complete(self, *, alone: bool) -> None:
         """Mark the plan as complete; with `alone`, remove results that no task of it has used."""
-        for path in set(self._folder.glob("*.parquet")) - self._used if alone else ():
+        for path in set(self.folder.glob("*.parquet")) - self._used if alone else ():
             path.unlink()
-        (self._folder / _PLAN).unlink(missing_ok=True)
+        (self.folder / _PLAN).unlink(missing_ok=True)
 
 
 def _digest(content: bytes) -> str:
@@ -143,7 +142,7 @@ def open_cache(
     try:
         with sole_writer(path):
             remove_leftovers(path)
-            cache: Cache[T, R] = Cache(path, kind, name=name, pack=pack, unpack=unpack)
+            cache: Cache[T, R] = Cache(folder=path, kind=kind, name=name, pack=pack, unpack=unpack)
             yield cache
             cache.complete(alone=claim_on(folder) is not None)
     except BaseException:

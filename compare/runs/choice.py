@@ -153,24 +153,19 @@ def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tupl
 def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
     """Return a label for each run: engine and support, and as much more as tells them apart."""
     labels = [str(run) for run in runs]
-    for detail in (_step_words, _setting_words):
+    steps = [
+        f"{run.time_step:g} s" if isinstance(run.time_step, float) else run.time_step or "" for run in runs
+    ]
+    settings = [" ".join(f"{key}={value}" for key, value in run.settings.items()) for run in runs]
+    for details in (steps, settings):
         labels = [
-            f"{label} {detail(run)}".rstrip() if labels.count(label) > 1 else label
-            for label, run in zip(labels, runs, strict=True)
+            f"{label} {detail}".rstrip() if labels.count(label) > 1 else label
+            for label, detail in zip(labels, details, strict=True)
         ]
     for label in labels:
         if labels.count(label) > 1:
             raise ValueError(f"the runs of a comparison must differ, got {label!r} twice")
     return tuple(labels)
-
-
-def _step_words(run: Run) -> str:
-    step = run.time_step
-    return step if isinstance(step, str) else f"{step:g} s" if step else ""
-
-
-def _setting_words(run: Run) -> str:
-    return " ".join(f"{key}={value}" for key, value in run.settings.items())
 
 
 def missing_engines() -> tuple[str, ...]:
@@ -274,9 +269,7 @@ def require_runnable(case: Case, run: Run) -> None:
         Problem(case, **run.settings, support=run.support)
         return
     step = None if isinstance(run.time_step, str) else run.time_step
-    settings = dict(run.settings)
-    for name in step_settings(run):
-        settings.pop(name, None)
+    settings = {name: value for name, value in run.settings.items() if name not in step_settings(run)}
     resolved_settings(case, run.engine_name, run.support, settings, step)
 
 
@@ -325,16 +318,11 @@ def default_runs(
             others = [] if unnamed else able
             able = [engine for engine in others if not set(usual) & set(find_engine(engine).supports)]
         if unnamed and supports is not None and not able:
-            _require_one_with(support)
+            for name in missing_engines():
+                if support in engine_named(name).supports:
+                    find_engine(name)  # refuses it, and says what it lacks
         runs += [Run(engine, support) for engine in able or (engines if supports is not None else ())]
     return tuple(runs)
-
-
-def _require_one_with(support: str) -> None:
-    """Refuse a support whose only engine does not run here, and say what that engine lacks."""
-    for name in missing_engines():
-        if support in engine_named(name).supports:
-            find_engine(name)
 
 
 def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tuple[Run, ...]:
@@ -365,12 +353,9 @@ def _unable(name: str, cases: Sequence[Case]) -> str:
         engine = find_engine(name)
     except (BrokenEngineError, EngineNotInstalledError) as error:
         return f"{error}; it is left out"
-    stands = not all(case.is_release for case in cases)
-    return (
-        f"{name} cannot uplift a cylinder that stands and is left out"
-        if stands and not engine.uplifts
-        else ""
-    )
+    if engine.uplifts or all(case.is_release for case in cases):
+        return ""
+    return f"{name} cannot uplift a cylinder that stands and is left out"
 
 
 def omissions(supports: Sequence[str]) -> tuple[str, ...]:
@@ -399,7 +384,9 @@ def references_of(
     elif run.support.walls:
         # the step of a run that seeks its own is not known beforehand
         half = "half the default step" if isinstance(run.time_step, str) else "half the step"
-        chosen[f"{label}, {half}"] = _finer(case, run)
+        default = default_step(case.cylinder.semidiagonal, case.gravity)
+        step = run.time_step if isinstance(run.time_step, float) else default
+        chosen[f"{label}, {half}"] = at_step(run, 0.5 * step)
     return {name: other for name, other in chosen.items() if other != run}
 
 
@@ -423,10 +410,3 @@ def own_model_of(case: Case, run: Run) -> Run:
     """The reduced model that an exact engine would follow."""
     nearest = models_of(case, run)[-1]
     return nearest if nearest.is_planar and not run.is_model else run.own_model
-
-
-def _finer(case: Case, run: Run) -> Run:
-    step = run.time_step
-    if not isinstance(step, float):
-        step = default_step(case.cylinder.semidiagonal, case.gravity)
-    return at_step(run, 0.5 * step)

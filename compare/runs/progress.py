@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 from rockwobble.models.shown import CompactRepr
@@ -79,10 +80,9 @@ class Clock:
         found: int = 0,
         damaged: Sequence[str] = (),
     ) -> None:
-        self._tell, self._damaged = tell, tuple(damaged)
-        self._whole, self._spent = sum(costs), 0.0
-        self._found = self._done = found
-        self._total = found + len(costs)
+        self._tell = tell
+        self._stated = partial(Progress, total=found + len(costs), found=found, damaged=tuple(damaged))
+        self._done, self._whole, self._spent = found, sum(costs), 0.0
         self._begun = time.monotonic()
 
     def __call__(self, state: Literal["started", "finished"], label: str, cost: float = 0.0) -> None:
@@ -92,18 +92,7 @@ class Clock:
         share = self._spent / self._whole if self._whole > 0.0 else 0.0
         left = (time.monotonic() - self._begun) * (1.0 / share - 1.0) if share > 0.0 else math.nan
         if self._tell is not None:
-            self._tell(
-                Progress(
-                    label=label,
-                    state=state,
-                    done=self._done,
-                    total=self._total,
-                    found=self._found,
-                    share=share,
-                    left=left,
-                    damaged=self._damaged,
-                )
-            )
+            self._tell(self._stated(label=label, state=state, done=self._done, share=share, left=left))
 
 
 def stages(tell: ProgressCallback | None, costs: Sequence[float]) -> Stage:

@@ -94,7 +94,7 @@ def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
                 target = target.resolve()
             if target.is_dir():
                 raise ValueError(f"the output file must not be a folder, got {target}")
-            part = _temporary_path(target)
+            part = target.with_name(f".{target.name}.{os.getpid()}{_PART}")  # until it is whole
             beside[part] = target
             part.write_bytes(content)
             _force_to_disk(part)
@@ -181,11 +181,6 @@ def sole_writer(folder: Path) -> Iterator[None]:
 def _is_stream(target: Path) -> bool:
     """Whether a name stands for a device or a pipe: renamed over, it would be one no more."""
     return target.exists() and not (target.is_file() or target.is_dir())
-
-
-def _temporary_path(target: Path) -> Path:
-    """Path of the temporary file that holds the content until it is whole."""
-    return target.with_name(f".{target.name}.{os.getpid()}{_PART}")
 
 
 def _force_to_disk(path: Path) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import io
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -155,10 +155,7 @@ def write_results(
     # a result that lost a file to this one is not whole any more
     others = [each for each in before if each.kind != manifest.kind and not written.keys() & {*each.files}]
     replace_files(place, {**written, MANIFEST: _pack([whole, *others])})
-    kept = {name for each in (whole, *others) for name in (*each.files, *each.pages)}
-    for each in before:
-        for name in {*each.files, *each.pages} - kept if each.kind == manifest.kind else ():
-            (place / name).unlink(missing_ok=True)
+    _remove(place, [each for each in before if each.kind == manifest.kind], kept=[whole, *others])
     return whole
 
 
@@ -268,9 +265,13 @@ def keep_results(folder: Path, kinds: Collection[str]) -> None:
     kept, gone = ([each for each in there if (each.kind in kinds) is wanted] for wanted in (True, False))
     if kept and gone:
         replace_files(folder, {MANIFEST: _pack(kept)})
-        names = {name for each in gone for name in (*each.files, *each.pages)}
-        for name in names - {name for each in kept for name in (*each.files, *each.pages)}:
-            (folder / name).unlink(missing_ok=True)
+        _remove(folder, gone, kept)
+
+
+def _remove(folder: Path, gone: Sequence[Manifest], kept: Sequence[Manifest]) -> None:
+    names, stay = ({name for each in part for name in (*each.files, *each.pages)} for part in (gone, kept))
+    for name in names - stay:
+        (folder / name).unlink(missing_ok=True)
 
 
 def manifests_in(folder: Path) -> list[Manifest]:

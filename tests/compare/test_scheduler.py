@@ -18,11 +18,10 @@ import pytest
 import scheduled
 from scheduled import die_once, killed, multiples, never_the_same, process_of, refuse, signalled
 
-from rockwobble.compare.runs import dask_backend, scheduler
+from rockwobble.compare.runs import scheduler
 from rockwobble.compare.runs.cache import open_table_cache, unfinished_results
-from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import FailedTask, Progress
-from rockwobble.compare.runs.scheduler import run_tasks
+from rockwobble.compare.runs.scheduler import ClusterError, run_tasks
 from rockwobble.compare.storage.claim import CACHE
 from rockwobble.models import cpus
 from rockwobble.models.cpus import usable_cpus
@@ -156,7 +155,7 @@ def test_one_run_at_a_time_writes_to_a_folder_and_leftovers_go(tmp_path):
 
 @pytest.mark.slow
 def test_no_scheduler_or_no_workers_are_one_clear_line(monkeypatch):
-    monkeypatch.setattr(dask_backend, "_PATIENCE", 0.5)
+    monkeypatch.setattr(scheduler, "_PATIENCE", 0.5)
     with pytest.raises(ValueError, match="no Dask scheduler answers at 'tcp://127"):
         run_tasks(abs, [1], scheduler="tcp://127.0.0.1:1")
     with pytest.raises(ValueError, match=r"has an address such as tcp://.*, got 'nonsense'"):

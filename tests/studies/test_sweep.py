@@ -8,8 +8,8 @@ import pytest
 
 from rockwobble import reduced, sweep
 from rockwobble.compare import IncompleteError, Progress
-from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import FailedTask
+from rockwobble.compare.runs.scheduler import ClusterError
 from rockwobble.compare.storage.claim import CACHE
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
