@@ -48,18 +48,20 @@ def fragility_findings(
     several = len(facts["cylinders"]) > 1
     fallen = [row for row in fits if row["limit"] == OVERTURNED]
     if any(row["kind"] == TOO_FEW for row in fits):
-        yield Finding(
-            key="fragility.few", level="not tested", values={"count": FEWEST, "count_levels": FEWEST_LEVELS}
-        )
+        fewest: dict[str, Value] = {"count": FEWEST, "count_levels": FEWEST_LEVELS}
+        yield Finding(key="fragility.few", level="not tested", values=fewest)
+    elif fallen and not any(row["exceeded"] for row in fallen):
+        yield Finding(key="fragility.nothing_overturns")
     else:
-        yield from _medians(fallen, MEASURES[str(facts["measure"])].unit, several, bound_of)
+        unit = MEASURES[str(facts["measure"])].unit.replace("-", "")
+        yield from _medians(fallen, unit, several, bound_of)
     for question, rows in answers.items():
         yield from (_pair(row, question, float(facts["margin"])) for row in rows)
     if poor := tuple(_method(row) for row in fallen if row["p"] < _POOR):
         yield Finding(key="fragility.poor_fit", level="caution", values={"bound": _POOR, "names": poor})
     for row in (each for each in fallen if each["failed"]):
         values = {"name": _method(row), "runs_failed": row["failed"], "runs": row["failed"] + row["runs"]}
-        if math.isfinite(row.get("median_if_not", math.nan)):
+        if math.isfinite(row["median_if_not"]):
             values |= {"intensity_most": row["median_if_exceeded"], "intensity": row["median_if_not"]}
         yield Finding(key="fragility.failed", level="caution", values=values)
     yield from _curveless(fits, several)
@@ -70,8 +72,9 @@ def fragility_findings(
 def _problem(facts: Facts) -> Iterator[Finding]:
     """Findings on the bodies, which motion friction lets them make, and the intensities."""
     methods, given, several = facts["methods"].values(), float(facts["friction"]), len(facts["cylinders"]) > 1
+    flat = any(each["support"] == str(FLAT) for each in methods)
     for name, body in facts["cylinders"].items():
-        if any(each["support"] == str(FLAT) for each in methods) and given < body["tan_alpha"]:
+        if flat and given < body["tan_alpha"]:
             values = {"reason": str(FLAT), "given": given, "bound": body["tan_alpha"]}
             yield Finding(key="mode.slides", values=values, runs=name)
         values = {"name": name, "factor": body.get("slab_mass_ratio") or None}
@@ -98,25 +101,18 @@ def _medians(
     fallen: Sequence[Row], unit: str, several: bool, bound_of: Callable[[str, float], float | str]
 ) -> Iterator[Finding]:
     """Findings on each median of overturning, or on what bounds it."""
-    if fallen and not any(row["exceeded"] for row in fallen):
-        yield Finding(key="fragility.nothing_overturns")
-        return
     for row in fallen:
-        kind, named = row["kind"], {"name": _method(row, several), "detail_unit": unit.replace("-", "")}
+        kind = row["kind"]
+        values: dict[str, Value] = {"name": _method(row, several), "detail_unit": unit}
         if kind == FITTED:
-            ends = row["median"], row["median_low"], row["median_high"]
-            yield Finding(key="fragility.median", values={**named, "intensity": ends}, runs=row["cylinder"])
+            values["intensity"] = row["median"], row["median_low"], row["median_high"]
+            yield Finding(key="fragility.median", values=values, runs=row["cylinder"])
         elif kind in (NEVER, ALWAYS, EXTRAPOLATED, ONE_MOTION):
             one = kind == ONE_MOTION and row["exceeded"] < row["runs"] / 2
             bound = bound_of(row["cylinder"], row["median"])
-            values: dict[str, Value] = {"reason": "one_motion_overturns" if one else f"bounded_{kind}"}
-            values |= {"detail": bound if isinstance(bound, str) else f"{bound:.3g}"}
-            yield Finding(
-                key="fragility.bounded",
-                level="caution",
-                values={**named, **values},
-                runs=row["cylinder"],
-            )
+            values["reason"] = "one_motion_overturns" if one else f"bounded_{kind}"
+            values["detail"] = bound if isinstance(bound, str) else f"{bound:.3g}"
+            yield Finding(key="fragility.bounded", level="caution", values=values, runs=row["cylinder"])
 
 
 def _pair(row: Row, question: str, margin: float) -> Finding:

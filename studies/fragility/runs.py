@@ -187,20 +187,11 @@ class Task:
             for case, factors in self.shakings
         )
 
-    def key(self) -> str:
-        """Hash that identifies the results."""
-        own = {"contact": self.contact, "rtol": _RTOL} if self.run.is_model else {}
-        own |= {} if self.gap is None else {"gap": self.gap}
-        shakings = [
-            case_inputs(case) | {"scales": tuple(factors.values())} for case, factors in self.shakings
-        ]
-        return result_fingerprint({"shakings": shakings, "run": self.run, **own}, makers_of(self.run))
-
     @property
     def _of_peaks(self) -> bool:
         """Whether the batch kernel suffices: peaks of homogeneous cylinders, with or without a slab."""
         own = self.shakings[0][0].cylinder
-        homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
+        homogeneous = own.height is own.transverse_inertia is own.axial_inertia is None
         return self.run.is_model and homogeneous and not self.contact
 
     def rows(self) -> list[Row]:
@@ -326,9 +317,8 @@ class RunPlan(Study[Task, pd.DataFrame]):
             )
         for cylinder in self.cylinders.values():
             case = self._case(cylinder, self.motions[0])
-            for method in self.methods:
-                if method.run is not None:
-                    require_runnable(case, self._with_step(method.run, cylinder))
+            for run in (method.run for method in self.methods if method.run is not None):
+                require_runnable(case, self._with_step(run, cylinder))
 
     def motions_of_levels(self) -> list[int]:
         """Return the number of motions at each level."""
@@ -414,7 +404,10 @@ class RunPlan(Study[Task, pd.DataFrame]):
 
     def key(self, task: Task) -> str:
         """Hash of what the runs of a task depend on."""
-        return task.key()
+        run, own = task.run, {"contact": task.contact, "rtol": _RTOL} if task.run.is_model else {}
+        own |= {} if task.gap is None else {"gap": task.gap}
+        shakings = [case_inputs(case) | {"scales": (*factors.values(),)} for case, factors in task.shakings]
+        return result_fingerprint({"shakings": shakings, "run": run, **own}, makers_of(run))
 
     def name(self, task: Task) -> str:
         """Title of a task."""

@@ -308,8 +308,8 @@ def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: st
         recess = [support == RECESS for support in supports]
         question = "planar" if engines[0] is None and "planar" in supports else "support"
         return (question, recess[0]) if recess[0] != recess[1] else ("", False)
+    turned = engines[0] is None
     if None in engines:
-        turned = engines[0] is None
         model, engine = (method, other) if turned else (against, one)
         return ("engine", turned) if engine["own_model"] == model else ("", False)
     return ("engine", False) if supports[0] == supports[1] else ("", False)
@@ -500,7 +500,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
         **({"rolling_resistance": asked.rolling_resistance} if asked.rolling_resistance else {}),
         **({} if asked.gap is None else {"gap": asked.gap}),
         **({} if asked.tendon is None else {"tendon": fields_of(asked.tendon)}),
-        "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),
+        "inputs": fingerprint([(task.name, task.label, plan.key(task)) for task in plan.tasks()]),
     }
 
 

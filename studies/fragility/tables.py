@@ -398,19 +398,10 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
         # equal counts give equal curves, also where both are beyond the levels
         same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
         low, high = np.where(same, 0.0, ends)
-        rows.append(
-            {
-                "cylinder": cylinder,
-                "method": method,
-                "motions": motions,
-                "motions_with_gaps": int(gaps.any(axis=1).sum()),
-                "runs": int((~np.isnan(sample.y)).sum()),
-                "runs_below_gaps": int(gaps.sum()),
-                "median": float(np.exp(whole.median[0])),
-                "median_incremental": float(np.exp(early.median[0])),
-                **interval(value, low, motions, above=high).exponential().columns("bias"),
-            }
-        )
+        counts = int(gaps.any(axis=1).sum()), int((~np.isnan(sample.y)).sum()), int(gaps.sum())
+        bias = interval(value, low, motions, above=high).exponential()
+        medians = float(np.exp(whole.median[0])), float(np.exp(early.median[0]))
+        rows.append((cylinder, method, motions, *counts, *medians, *bias.columns("bias").values()))
     return pd.DataFrame(rows, columns=_GAPS)
 
 
@@ -460,15 +451,14 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
         fitted = [measure for measure, curve in found.items() if KINDS[curve.kinds[0]] == FITTED]
         if not fitted:
             continue
-        size = samples[fitted[0]].y.size
-        some = weights[: max(_FEWEST, _MOST_NUMBERS // size)]
-        drawn = {m: samples[m].curves(some).dispersion for m in fitted}
-        best = min(fitted, key=lambda m: float(found[m].dispersion[0]))
-        for measure in fitted:
-            spread, least = (float(found[each].dispersion[0]) for each in (measure, best))
+        some = weights[: max(_FEWEST, _MOST_NUMBERS // samples[fitted[0]].y.size)]
+        spreads = {measure: float(found[measure].dispersion[0]) for measure in fitted}
+        drawn = {measure: samples[measure].curves(some).dispersion for measure in fitted}
+        best = min(fitted, key=spreads.__getitem__)
+        for measure, spread in spreads.items():
             with np.errstate(divide="ignore", invalid="ignore"):  # separated resamples have no dispersion
                 ratios = np.log(drawn[measure] / drawn[best]) if measure != best else np.zeros(len(some))
-            over = interval(math.log(spread / least), ratios, motions).exponential()
+            over = interval(math.log(spread / spreads[best]), ratios, motions).exponential()
             rows.append(
                 {
                     "cylinder": cylinder,
