@@ -60,7 +60,7 @@ def brute_force(hazard: HazardCurve, x: np.ndarray, y: np.ndarray, uplift: float
     return float(np.sum(0.5 * (p[1:] + p[:-1]) * (rate[:-1] - rate[1:])) + p[-1] * rate[-1])
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_indicators_with_gaps_on_an_uneven_curve_are_integrated_exactly(seed: int) -> None:
     rng = np.random.default_rng(seed)
     points = np.sort(rng.uniform(math.log(0.05), math.log(3.0), 12))
@@ -82,11 +82,12 @@ def test_a_finer_curve_of_the_same_power_law_changes_nothing() -> None:
     ends = np.array([-2.0]), np.array([9.0])
     coarse, fine = (frequencies_of(power_law(count), x, y, *ends).total[0] for count in (2, 300))
     assert coarse == pytest.approx(fine, rel=1e-12)
-
-
-def test_mean_of_the_frequency_between_equal_ends_is_the_frequency_there() -> None:
     at = np.log(np.array([0.3, 0.3]))
     assert mean_over(power_law(), at, at) == pytest.approx(K0 * 0.3**-K, rel=1e-12)
+    longer = continued(power_law(low=0.1), math.log(2e-3))
+    assert longer.exceedance([2e-3 * (1 + 1e-9), 0.03]) == pytest.approx(K0 * np.array([2e-3, 0.03]) ** -K)
+    hazard = power_law(low=0.1)  # below its first point the frequency there counts
+    assert lognormal_frequency(hazard, math.log(1e-4), 0.3) == pytest.approx(hazard.annual_frequency[0])
 
 
 def single(hazard: HazardCurve, levels: list[float], y: list[float], uplift: float) -> dict[str, float]:
@@ -135,11 +136,6 @@ def test_tail_shares_of_both_ends_are_stated() -> None:
     assert short["most"] == pytest.approx(short["total"] + K0 * 0.7**-K - short["tail"])
     unseen = single(power_law(high=0.15), levels, [0.0, 0.0, 1.0], 0.1)
     assert (unseen["total"], unseen["most"]) == (0.0, pytest.approx(K0 * 0.15**-K))
-
-
-def test_a_power_law_continued_is_the_same_law() -> None:
-    longer = continued(power_law(low=0.1), math.log(2e-3))
-    assert longer.exceedance([2e-3 * (1 + 1e-9), 0.03]) == pytest.approx(K0 * np.array([2e-3, 0.03]) ** -K)
 
 
 @pytest.mark.filterwarnings("error")
@@ -257,19 +253,11 @@ def test_the_mean_over_motions_is_that_of_their_indicators(found: rw.studies.Fra
 
 def test_every_measure_of_a_hazard_is_reached(found: rw.studies.Fragility) -> None:
     by_resultant = HazardCurve(SITE.intensity, SITE.annual_frequency, measure="pga_resultant")
-    ratio = found.points["peak_acceleration"] * 0.2 / found.points["pga"]
-    assert (ratio >= 1.0 - 1e-12).sum() > 0
-    assert (
-        found.risk(by_resultant)["annual_frequency"].iloc[0] != found.risk(SITE)["annual_frequency"].iloc[0]
-    )
+    rates = [found.risk(each)["annual_frequency"].iloc[0] for each in (SITE, by_resultant)]
+    assert rates[0] != rates[1]
     for measure in ("pgv", "pgv_resultant"):
-        assert (
-            found.risk(HazardCurve(SITE.intensity, SITE.annual_frequency, measure=measure))
-            .drop(columns=["ratio_low", "ratio_high"])
-            .notna()
-            .all()
-            .all()
-        )
+        table = found.risk(HazardCurve(SITE.intensity, SITE.annual_frequency, measure=measure))
+        assert table.drop(columns=["ratio_low", "ratio_high"]).notna().all().all()
 
 
 def test_a_hazard_of_another_period_is_refused(found: rw.studies.Fragility) -> None:
@@ -394,24 +382,20 @@ def test_motions_by_level_are_refused_where_they_are_not_one_set() -> None:
         rw.fragility(pier, {1.0: [a, b], 2.0: [other, b]})
 
 
-def test_far_scaled_records_are_counted_and_synthetic_motions_are_not(found: rw.studies.Fragility) -> None:
-    assert found.risk(SITE)["far_share"].tolist() == [0.0, 0.0]
-    points = found.points.assign(synthetic=False)
-    recorded = rw.studies.Fragility(tables={**found.tables, "points": points}, facts=found.facts)
-    assert (recorded.risk(SITE)["far_share"] >= 0.0).all()
-    weak = points.assign(scale=100.0 * points["scale"], uplift_scale=100.0 * points["uplift_scale"])
-    scaled = rw.studies.Fragility(tables={**found.tables, "points": weak}, facts=found.facts)
-    assert scaled.risk(SITE)["far_share"].to_numpy() == pytest.approx(1.0, abs=1e-9)
-
-
-@pytest.mark.parametrize(("lowest", "all_far"), [(5.05, True), (0.6, False)])
-def test_a_factor_above_5_is_far(found: rw.studies.Fragility, lowest: float, all_far: bool) -> None:
+@pytest.mark.parametrize(
+    ("lowest", "least", "most"), [(100.0, 1.0, 1.0), (5.05, 1.0, 1.0), (0.6, 0.0, 0.999)]
+)
+def test_a_factor_above_5_on_a_record_is_far(
+    found: rw.studies.Fragility, lowest: float, least: float, most: float
+) -> None:
+    assert found.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # of synthetic motions none is
     more = lowest / found.points["uplift_scale"].min()
     points = found.points.assign(synthetic=False, scale=more * found.points["scale"])
     points = points.assign(uplift_scale=more * points["uplift_scale"])
     scaled = rw.studies.Fragility(tables={**found.tables, "points": points}, facts=found.facts)
     share = scaled.risk(SITE)["far_share"].iloc[0]
-    assert share == pytest.approx(1.0, abs=1e-9) if all_far else 0.0 < share < 0.999
+    assert least - 1e-9 <= share <= most + 1e-9
+    assert share > 0.0
 
 
 def test_the_margin_is_the_median_over_the_2475_year_intensity(found):
@@ -424,8 +408,3 @@ def test_the_margin_is_the_median_over_the_2475_year_intensity(found):
         # dispersion hardly differs by the measure: it is stated in the unit of the levels
         assert table["annual_frequency_fit"][method] == pytest.approx(of_curve, rel=0.5)
         assert table["annual_frequency_fit"][method] > SITE.exceedance(math.exp(centre))
-
-
-def test_below_the_first_point_of_a_hazard_its_frequency_counts() -> None:
-    hazard = power_law(low=0.1)
-    assert lognormal_frequency(hazard, math.log(1e-4), 0.3) == pytest.approx(hazard.annual_frequency[0])
