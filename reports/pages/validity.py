@@ -40,13 +40,12 @@ def page_of(results: Validity) -> Page:
     """The report."""
     tables, structure, findings = results.tables, results.structure, results.findings()
     drawn = pictures(results)
-    names = [picture.name for picture in drawn]
 
     def said(group: str) -> list[str]:
         return [statement(each) for each in findings.of(f"limit_{group}")]
 
     def shown(*chosen: str) -> list[str]:
-        return [name for name in chosen if name in names]
+        return [picture.name for picture in drawn if picture.name in chosen]
 
     ranges = {
         name: tables[part][column].agg(["min", "max"]).tolist()

@@ -146,15 +146,13 @@ def check_cells(spectrum: TiltMaps) -> pd.DataFrame:
     chosen = np.random.default_rng(0).choice(cells, size=min(CELLS, cells), replace=False)
     rows = []
     for which, i, j in zip(*np.unravel_index(np.sort(chosen), shape), strict=True):
-        name = SERIES[which]
-        peak = float(spectrum.peak_tilt[name][i, j])
-        single, copy = (
-            _single(spectrum, name, i, float(spectrum.scales[j]) * factor) for factor in (1.0, 1.0 + NUDGE)
-        )
+        series, size = SERIES[which], float(spectrum.semidiagonals[i])
+        peak, scale = float(spectrum.peak_tilt[series][i, j]), float(spectrum.scales[j])
+        single, copy = (_single(spectrum, series, size, scale * factor) for factor in (1.0, 1.0 + NUDGE))
         rows.append(
             {
-                "series": name,
-                "semidiagonal": float(spectrum.semidiagonals[i]),
+                "series": series,
+                "semidiagonal": size,
                 "intensity": float(spectrum.intensities[j]),
                 "peak_tilt": peak,
                 "single_peak_tilt": single,
@@ -178,22 +176,19 @@ def confirm_lowest(spectrum: TiltMaps) -> pd.DataFrame:
     """
     table = spectrum.lowest_frame()
     table["confirmed"] = [
-        _overturns_again(spectrum, name, i, spectrum.unit * float(lowest))
-        for name in SERIES
-        for i, lowest in enumerate(spectrum.lowest[name])
+        math.isfinite(lowest)
+        and all(
+            overturned(_single(spectrum, series, size, spectrum.unit * lowest * factor))
+            for factor in CONFIRMING
+        )
+        for series, size, lowest in table[["series", "semidiagonal", "intensity"]].itertuples(index=False)
     ]
     return table
 
 
-def _overturns_again(spectrum: TiltMaps, series: str, i: int, scale: float) -> bool:
-    if math.isnan(scale):
-        return False
-    return all(overturned(_single(spectrum, series, i, scale * factor)) for factor in CONFIRMING)
-
-
-def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
+def _single(spectrum: TiltMaps, series: str, size: float, scale: float) -> float:
     run = reduced.simulate(
-        spectrum.case(float(spectrum.semidiagonals[i]), scale),
+        spectrum.case(size, scale),
         rtol=CHECK_RTOL,
         sample_step=spectrum.motion.duration,
         **series_options(series, spectrum.plan.support),
