@@ -84,6 +84,7 @@ def test_a_suite_file_holds_frames(tmp_path: Any) -> None:
 def test_a_frame_and_a_cylinder_are_bodies_beside_each_other() -> None:
     frame = WobblingFrame(PIER, 0.0)
     assert not isinstance(frame, Cylinder)
+    assert (PIER.slab_mass_ratio, PIER.columns) == (0.0, 1)
     asked = [name for name in dir(RockingBody) if not name.startswith("_")]
     for name in asked:
         assert (getattr(PIER, name) == getattr(frame, name)) == (name not in ("carries_slab", "columns")), (

@@ -44,10 +44,11 @@ def semicolons(header: str, *columns: Values) -> str:
     return table(header, *columns, separator=";", comma=",").replace("\n", "\r\n")
 
 
-def stamped(header: str, before: str, behind: str = "") -> str:
-    at = [f"10:20:{29.7 + t:06.3f}" for t in TIME]
-    rows = zip(at, EAST, NORTH, UP, strict=True)
-    return f"{header}\n" + "".join(f"{before}{t}{behind},{x:.12g},{y:.12g},{z:.12g}\n" for t, x, y, z in rows)
+def stamped(before: str, behind: str = "") -> str:
+    rows = zip(TIME, EAST, NORTH, UP, strict=True)
+    return "timestamp,E [gal],N [gal],Z [gal]\n" + "".join(
+        f"{before}10:20:{29.7 + t:06.3f}{behind},{x:.12g},{y:.12g},{z:.12g}\n" for t, x, y, z in rows
+    )
 
 
 def lines(values: Values, width: int, form: str = "%12.3f") -> str:
@@ -102,7 +103,7 @@ READ: Mapping[str, tuple[str | bytes, Mapping[str, Values], dict[str, Any]]] = {
         ALL,
         {},
     ),
-    "iso_8601.csv": (stamped("timestamp,E [gal],N [gal],Z [gal]", "2023-02-06T", "Z"), ALL, {}),
+    "iso_8601.csv": (stamped("2023-02-06T", "Z"), ALL, {}),
     "epoch.csv": (
         table("time,seconds_elapsed,E [gal],N [gal]", TIME, EAST, NORTH, first=1e9 * APP),
         TWO,
@@ -154,7 +155,7 @@ REFUSED: Mapping[str, tuple[str | bytes, str]] = {
         table("時刻(s),南北(gal),東西(gal)", NORTH, EAST).encode("cp932"),
         "save it as UTF-8",
     ),
-    "clock.csv": (stamped("time,E [gal],N [gal],Z [gal]", ""), "0 rows of numbers"),
+    "clock.csv": (stamped(""), "0 rows of numbers"),
     "touching.txt": (
         "DT = 0.01 SEC   UNITS: CM/SEC2\n" + lines(-EAST - 900.0, 8, "%9.4f"),
         "0 rows of numbers",
