@@ -11,13 +11,8 @@ from .number_checks import quoted, require_finite, require_positive
 from .plain_json import Facts
 from .shown import CompactRepr, brief, line
 
-_UNITS = {
-    "semidiagonal": "m",
-    "tan_alpha": "",
-    "height": "m",
-    "transverse_inertia": "m^2",
-    "axial_inertia": "m^2",
-}
+_UNITS = {"semidiagonal": "m", "tan_alpha": "", "height": "m"}
+_UNITS |= dict.fromkeys(("transverse_inertia", "axial_inertia"), "m^2")
 # quantities in m^2 and m^4 are shown as plain numbers
 _SMALLEST, _LARGEST = 1e-70, 1e70  # [m]
 

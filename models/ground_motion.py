@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .diagnostic import Diagnostic
-from .number_checks import quoted, require_finite, require_positive
+from .number_checks import quoted, require_finite, require_numbers, require_positive
 from .record_source import RecordSource
 from .shown import brief, line
 
@@ -56,13 +56,7 @@ class GroundMotion:
     def __init__(
         self, acceleration: ArrayLike, time_step: float, name: str = "", source: RecordSource | None = None
     ) -> None:
-        if isinstance(acceleration, np.ndarray) and np.iscomplexobj(acceleration):
-            # numpy would drop the imaginary part
-            raise ValueError(f"acceleration must be real numbers, got {acceleration.dtype} numbers")
-        try:
-            samples = np.array(acceleration, dtype=np.float64, order="C")
-        except (TypeError, ValueError, OverflowError):
-            raise ValueError("acceleration must be numbers in 2 or 3 columns [m/s^2]") from None
+        samples = np.ascontiguousarray(require_numbers("acceleration", acceleration))
         if samples.ndim != 2 or samples.shape[1] not in (2, 3) or samples.shape[0] < 2:
             raise ValueError(
                 f"acceleration must have shape (n, 2) or (n, 3) with n >= 2, got {samples.shape}"

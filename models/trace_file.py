@@ -32,40 +32,43 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # the name of our part of the metadata of a Parquet file, beside that of pandas
 METADATA = b"rockwobble"
-# name: (unit, meaning), of the samples as a table
-COLUMNS = {
-    "time": ("s", "from the start of the run"),
-    "tilt": ("rad", "of the axis from the vertical"),
-    "tilt_rate": ("rad/s", "its rate"),
-    "rolling_angle": ("rad", "azimuth of the lean, unwrapped; empty at rest"),
-    "rolling_rate": ("rad/s", "its rate"),
-    "twist": ("rad", "rolling angle plus spin about the axis"),
-    "contact_x": ("m", "contact point, relative to the original base centre, which moves with the ground"),
-    "contact_y": ("m", "likewise"),
-    "centre_x": ("m", "mass centre, relative to the same point"),
-    "centre_y": ("m", "likewise"),
-    "centre_z": ("m", "likewise, up"),
-    "displacement_x": ("m", "base centre, relative to the same point"),
-    "displacement_y": ("m", "likewise"),
-    "force_x": ("weights", "contact force on the cylinder"),
-    "force_y": ("weights", "likewise"),
-    "force_z": ("weights", "likewise, up"),
-    "top_force_x": (
+# names of samples in a table, components of a vector together, their unit and meaning
+_SAMPLES = (
+    ("time", "s", "from the start of the run"),
+    ("tilt", "rad", "of the axis from the vertical"),
+    ("tilt_rate", "rad/s", "its rate"),
+    ("rolling_angle", "rad", "azimuth of the lean, unwrapped; empty at rest"),
+    ("rolling_rate", "rad/s", "its rate"),
+    ("twist", "rad", "rolling angle plus spin about the axis"),
+    (
+        "contact_x contact_y",
+        "m",
+        "contact point, relative to the original base centre, which moves with the ground",
+    ),
+    ("centre_x centre_y centre_z", "m", "mass centre, relative to the same point"),
+    ("displacement_x displacement_y", "m", "base centre, relative to the same point"),
+    ("force_x force_y force_z", "weights", "contact force on the cylinder"),
+    (
+        "top_force_x top_force_y top_force_z",
         "weights",
         "of a frame: contact force of a column on its share of the slab",
     ),
-    "top_force_y": ("weights", "likewise"),
-    "top_force_z": ("weights", "likewise, up"),
-    "friction_needed": ("", "horizontal over normal force; infinite where the normal force is not positive"),
-    "restraining_moment": ("m", "of the recess: kappa in kappa (z_world + z_body), over the weight"),
-    "elongation": ("m", "of the tendon, since rest"),
-    "tendon_force": ("weights", "tension of the tendon, over the weight of one column"),
-    "energy": ("m2/s2", "relative to the ground, per unit mass, zero standing"),
-    "energy_lost": ("m2/s2", "energy that rolling resistance and impacts took so far, per unit mass"),
-    "energy_error": ("m2/s2", "energy that neither the start nor the excitation supplied"),
-    "slip": ("m", "distance slipped so far"),
-    "wall_contact": ("s", "time at walls so far"),
-    "wall_impulse": ("m/s", "size of the force of those walls, summed over time so far, per unit mass"),
+    ("friction_needed", "", "horizontal over normal force; infinite where the normal force is not positive"),
+    ("restraining_moment", "m", "of the recess: kappa in kappa (z_world + z_body), over the weight"),
+    ("elongation", "m", "of the tendon, since rest"),
+    ("tendon_force", "weights", "tension of the tendon, over the weight of one column"),
+    ("energy", "m2/s2", "relative to the ground, per unit mass, zero standing"),
+    ("energy_lost", "m2/s2", "energy that rolling resistance and impacts took so far, per unit mass"),
+    ("energy_error", "m2/s2", "energy that neither the start nor the excitation supplied"),
+    ("slip", "m", "distance slipped so far"),
+    ("wall_contact", "s", "time at walls so far"),
+    ("wall_impulse", "m/s", "size of the force of those walls, summed over time so far, per unit mass"),
+)
+# name: (unit, meaning), of the samples as a table
+COLUMNS = {
+    name: (unit, words if not at else "likewise, up" if name.endswith("_z") else "likewise")
+    for names, unit, words in _SAMPLES
+    for at, name in enumerate(names.split())
 }
 PASS_COLUMNS = {
     "time": ("s", "of the least tilt"),

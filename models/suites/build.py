@@ -78,14 +78,8 @@ def _cases(table: CaseTable, path: str, folder: Path) -> Iterator[Case]:
 
 def _numbers(table: CaseTable) -> Iterator[tuple[tuple[str, str], tuple[float, ...]]]:
     """Yield (table, key) and values of every number that the case gives, in the order of a name."""
-    parts: list[tuple[str, BaseModel | None]] = [
-        ("cylinder", table.cylinder),
-        ("motion", table.motion),
-        ("release", table.release),
-        ("tendon", table.tendon),
-        ("", table),
-    ]
-    for part, holder in parts:
+    for part in ("cylinder", "motion", "release", "tendon", ""):
+        holder: BaseModel | None = getattr(table, part) if part else table
         for key in type(holder).model_fields if holder is not None else ():
             values = getattr(holder, key)
             if isinstance(values, tuple):
