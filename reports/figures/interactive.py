@@ -6,14 +6,13 @@ import base64
 import dataclasses
 import html
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .heat import NOTHING, Heat, Shades
-from .palette import GREY, Style
-from .picture import MOST_ENTRIES, Axis, Band, Bars, Layer, Line, Panel, Picture, Rule, Text
+from .picture import MOST_ENTRIES, Axis, Layer, Line, Panel, Picture
 from .thinning import POINTS, kept_points
 
 _PER_INCH = 125.0  # pixels of height
@@ -49,7 +48,7 @@ def colour_bar(shades: Shades) -> str:
 
 def chart(panel: Panel, picture: Picture) -> dict[str, object]:
     """Return a panel as data: plain values, and arrays as base64 of little-endian float32."""
-    entries = {name: entry for layer in panel.layers for name, entry in _entries(layer) if name}
+    entries = panel.entries()
     shown = list(entries)[: MOST_ENTRIES - (len(entries) > MOST_ENTRIES)]
     maps = any(isinstance(layer, Heat) for layer in panel.layers)
     return {
@@ -86,24 +85,12 @@ def _axis(axis: Axis) -> dict[str, object]:
 def _layer(layer: Layer, panel: Panel, picture: Picture) -> dict[str, object]:
     if isinstance(layer, Line):
         return _line(layer, picture.points)
-    if isinstance(layer, Band):
-        sides = {"x": base64_of(layer.x), "low": base64_of(layer.low), "high": base64_of(layer.high)}
-        return {"kind": "band", "name": layer.name, "colour": layer.colour, **sides}
-    if isinstance(layer, Bars):
-        return {
-            "kind": "bars",
-            "name": layer.name,
-            "colours": list(layer.colours),
-            "hatch": layer.hatch,
-            "texts": list(layer.texts),
-            **{key: base64_of(getattr(layer, key)) for key in ("places", "start", "end")},
-        }
-    if isinstance(layer, Rule):
-        return {"kind": "rule", **dataclasses.asdict(layer)}
-    if isinstance(layer, Text):
-        return {"kind": "text", **dataclasses.asdict(layer)}
-    assert picture.shades is not None
-    return _heat(layer, panel, picture.shades)
+    if isinstance(layer, Heat):
+        assert picture.shades is not None
+        return _heat(layer, panel, picture.shades)
+    fields = dataclasses.asdict(layer).items()
+    packed = {name: base64_of(value) if isinstance(value, np.ndarray) else value for name, value in fields}
+    return {"kind": type(layer).__name__.lower(), **packed}
 
 
 def _line(line: Line, points: int) -> dict[str, object]:
@@ -118,7 +105,7 @@ def _line(line: Line, points: int) -> dict[str, object]:
         "name": line.name,
         "x": base64_of(line.x[keep]),
         "y": base64_of(line.y[keep]),
-        "style": _style(line.style),
+        "style": dataclasses.asdict(line.style),
         "width": line.width,
         "size": line.size,
         "opacity": line.opacity,
@@ -127,27 +114,6 @@ def _line(line: Line, points: int) -> dict[str, object]:
         "clip": line.clip,
         "notes": [line.notes[place] for place in keep] if line.notes else [],
     }
-
-
-def _style(style: Style) -> dict[str, str]:
-    return {"colour": style.colour, "dash": style.dash, "symbol": style.symbol}
-
-
-def _entries(layer: Layer) -> Iterator[tuple[str, Mapping[str, object]]]:
-    """Yield the entries of a layer in the legend: a name, and how its mark looks."""
-    if isinstance(layer, Line):
-        yield layer.name, {**_style(layer.style), "width": layer.width}
-    elif isinstance(layer, Rule):
-        yield (
-            layer.name,
-            {"colour": layer.colour, "dash": layer.dash if layer.until is None else "", "width": 1},
-        )
-    elif isinstance(layer, Band):
-        yield layer.name, {"colour": layer.colour}
-    elif isinstance(layer, Bars):
-        yield layer.name, {"colour": layer.colours[0] if layer.colours else GREY}
-    elif isinstance(layer, Heat):
-        yield from ((gap.name, {"colour": gap.colour}) for gap in layer.gaps if gap.cells.any())
 
 
 def _heat(heat: Heat, panel: Panel, shades: Shades) -> dict[str, object]:

