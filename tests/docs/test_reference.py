@@ -70,23 +70,16 @@ def public(package: str) -> dict[str, object]:
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_every_public_function_says_what_goes_in_and_what_comes_out(package: str) -> None:
+def test_public_functions_and_members_say_what_they_are(package: str) -> None:
     silent = []
-    for name, function in public(package).items():
-        if inspect.isfunction(function):
-            said, returned = inspect.getdoc(function) or "", inspect.signature(function).return_annotation
-            silent += [name] * bool(inspect.signature(function).parameters and "Parameters\n" not in said)
-            silent += [name] * bool(returned not in ("None", None) and "Returns\n" not in said)
-    assert silent == []
-
-
-@pytest.mark.parametrize("package", PACKAGES)
-def test_every_public_member_of_a_class_has_words(package: str) -> None:
-    silent = []
-    for name, kind in public(package).items():
-        for member, value in vars(kind).items() if inspect.isclass(kind) else ():
+    for name, thing in public(package).items():
+        if inspect.isfunction(thing):
+            said, signature = inspect.getdoc(thing) or "", inspect.signature(thing)
+            silent += [name] * bool(signature.parameters and "Parameters\n" not in said)
+            silent += [name] * (signature.return_annotation not in ("None", None) and "Returns\n" not in said)
+        for member, value in vars(thing).items() if inspect.isclass(thing) else ():
             asked = isinstance(value, property | classmethod | staticmethod) or inspect.isfunction(value)
-            if asked and not member.startswith("_") and not (inspect.getdoc(getattr(kind, member)) or ""):
+            if asked and not member.startswith("_") and not (inspect.getdoc(getattr(thing, member)) or ""):
                 silent.append(f"{name}.{member}")
     assert silent == []
 
@@ -132,14 +125,11 @@ def test_every_command_has_its_help_on_a_page() -> None:
     assert sorted([*alone, *of_groups]) == sorted(commands)
 
 
-def test_every_key_of_a_suite_file_is_on_its_page() -> None:
+def test_keys_of_suites_and_groups_of_findings_are_on_their_pages() -> None:
     page = (DOCS / "reference" / "suite-file.md").read_text(encoding="utf-8")
     keys = [key for name, table in TABLES.items() if name for key in table.model_fields]
     assert len(keys) > 40
     assert [key for key in keys if f"`{key}`" not in page] == []
-
-
-def test_every_group_of_findings_is_on_its_page_once() -> None:
     page = (DOCS / "reference" / "findings.md").read_text(encoding="utf-8")
     listed = [group for line in re.findall(r"\{findings-table\} (.*)", page) for group in line.split()]
     labels = {"word", "diagnostic", "figure", "number", "motions", "progress"}  # which nothing decides
@@ -213,6 +203,7 @@ def test_every_comparison_file_and_manifest_key_is_documented(tmp_path: Path) ->
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebooks_are_short_ask_a_question_and_keep_small_outputs(notebook: Path) -> None:
+    assert int(notebook.name[:2]) == 1 + NOTEBOOKS.index(notebook)  # in the order of reading
     cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
     first = "".join(cells[0]["source"])
     assert first.startswith("# ")
@@ -230,22 +221,3 @@ def test_notebooks_are_short_ask_a_question_and_keep_small_outputs(notebook: Pat
     pictures = [output for output in outputs if "image/png" in output.get("data", {})]
     drawn = any(".plot(" in "".join(cell["source"]) for cell in code)
     assert bool(pictures) >= drawn
-
-
-def test_notebooks_are_numbered_in_the_order_in_which_they_are_read() -> None:
-    assert [path.name[:2] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06", "07", "08"]
-
-
-def test_one_version_is_said_everywhere() -> None:
-    said = {
-        "pyproject.toml": r'^version = "([^"]+)"',
-        "CITATION.cff": r"^version: (\S+)",
-        "CHANGELOG.md": r"^## \[(\d[^\]]*)\]",
-        "docs/citing.md": r"^  version = \{(\S+)\}",
-    }
-    found = {}
-    for name, pattern in said.items():
-        first = re.search(pattern, (DOCS.parent / name).read_text(encoding="utf-8"), re.MULTILINE)
-        assert first, name
-        found[name] = first.group(1)
-    assert len(set(found.values())) == 1, found

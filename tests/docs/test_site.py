@@ -72,21 +72,13 @@ def names() -> list[str]:
     return [name for name in found if not name.startswith("_")]  # what the theme brings is no page
 
 
-def used(term: str, text: str) -> bool:
-    words = " ".join(text.lower().split())
-    return re.search(rf"(?<![\w-]){re.escape(term)}(?:e?s)?(?![\w-])", words) is not None
-
-
 @pytest.fixture(scope="module")
 def pages() -> dict[str, Page]:
     return {name: Page(BUILT / name) for name in names()}
 
 
-def test_there_is_a_site(pages: dict[str, Page]) -> None:
+def test_every_link_inside_resolves_and_outside_are_pages(pages: dict[str, Page]) -> None:
     assert len(pages) > 30
-
-
-def test_every_link_inside_resolves(pages: dict[str, Page]) -> None:
     broken = []
     for name, page in pages.items():
         for link in page.links:
@@ -102,9 +94,6 @@ def test_every_link_inside_resolves(pages: dict[str, Page]) -> None:
                 if unquote(parts.fragment) not in known:
                     broken.append(f"{name}: {link}")
     assert broken == []
-
-
-def test_nothing_outside_is_a_link_but_a_page(pages: dict[str, Page]) -> None:
     schemes = {(name, urlsplit(link).scheme) for name, page in pages.items() for link in page.links}
     # a page in the sense of a browser: the address of a scheduler in a text is none
     assert {each for each in schemes if each[1] not in ("", "https", "data")} == set()

@@ -73,16 +73,9 @@ class ThresholdStudy(Plan, Study[tuple[float, float], Thresholds]):
 from pathlib import Path
 
 import pytest
-from showing import loads_as_it_was, shows_itself
+from showing import call, loads_as_it_was, shows_itself
 
-from rockwobble.reports.cli.main import main
 from rockwobble.studies.thresholds import Thresholds, ThresholdStudy
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main([*arguments])
-    return int(ended.value.code or 0)
 
 
 def test_the_threshold_is_g_tan_alpha_and_loads_as_it_was(tmp_path: Path) -> None:
@@ -104,8 +97,7 @@ def test_the_command_saves_shows_draws_again_and_refuses(
     page = (tmp_path / "thresholds.html").read_text()
     assert page.count('class="chart"') == 1
     (tmp_path / "thresholds.html").unlink()
-    assert call("show", str(tmp_path)) == 0
-    assert call("report", str(tmp_path)) == 0
+    assert [call(command, str(tmp_path)) for command in ("show", "report")] == [0, 0]
     assert (tmp_path / "thresholds.html").read_text() == page
     capsys.readouterr()
     assert call(*stated[:3], "--out", str(tmp_path)) == 2

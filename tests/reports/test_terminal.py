@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import io
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from rich.console import Console
+from showing import call
 
-from rockwobble.reports.cli.main import main
+import rockwobble as rw
+from rockwobble.models import Case, Cylinder, Run
+from rockwobble.reports.pages import page_of
 
 
 @pytest.mark.slow
@@ -32,9 +38,33 @@ def test_an_answer_fits_on_a_screen_of_80_columns(
     no_engines()
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit) as ended:
-        main([*command.split(), "--out", "rockwobble-answer"])
-    assert ended.value.code == 0
+    assert call(*command.split(), "--out", "rockwobble-answer") == 0
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80
     assert len(lines) <= most
+
+
+def printed(comparison: rw.Comparison, width: int) -> str:
+    screen = io.StringIO()
+    page_of(comparison.made_by()).show(Console(width=width, file=screen, no_color=True))
+    return screen.getvalue()
+
+
+@pytest.mark.parametrize("width", [80, 100])
+def test_every_row_of_the_table_of_a_comparison_is_a_line(comparison: rw.Comparison, width: int) -> None:
+    text = printed(comparison, width)
+    assert "…" not in text
+    assert max(len(line.rstrip()) for line in text.splitlines()) <= width
+    rows = re.findall(r"^(?:mujoco|pybullet) (?:recess|flat) +stands ", text, re.MULTILINE)
+    assert len(rows) == comparison.summary["run"].nunique()
+    for heading in ("agrees", "tilt", "contact", "turn", "uplift", "cost"):
+        assert heading in text
+    assert "more column" not in text
+
+
+def test_a_failed_run_is_no_number(no_engines: Callable[..., None]) -> None:
+    no_engines(outcome="failed", peak_tilt=float("nan"), residual_displacement=float("nan"))
+    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0, name="still")
+    text = printed(rw.comparison(case, runs=[Run("mujoco", "recess")]), 100)
+    assert "failed" in text
+    assert "nan" not in text
