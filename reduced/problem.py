@@ -290,14 +290,10 @@ class Problem:
     @cached_property
     def _plane(self) -> Plane | None:
         """The vertical plane that the motion stays in, if there is one."""
+        azimuth = plane_of(self.case) if self.plane is None else float(self.plane)
+        if azimuth is None:
+            return None
         record = three_columns(self.case.motion)
-        if self.plane is not None:
-            azimuth = float(self.plane)
-        else:
-            found = plane_of(self.case)
-            if found is None:
-                return None
-            azimuth = found
         x, y = record[:, 0], record[:, 1]
         along = x * math.cos(azimuth) + y * math.sin(azimuth)
         return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))

@@ -64,9 +64,7 @@ class Declared:
         yield self.stepper_type(scene, self.settings_type(**settings))
 
 
-@cache  # reading it takes as long as a hundred steps
-def _version(package: str) -> str:
-    return version(package)
+_version = cache(version)  # reading it takes as long as a hundred steps
 
 
 class Leapfrog:

@@ -394,11 +394,10 @@ class _DrakeStepper(Leapfrog):
     def _turn_point_below(self, ax: float, ay: float, az: float) -> None:
         """Turn a point of the rim to the lowest place of a nearly flat base, or to where it is loaded."""
         rim, body = self._rim, self._scene.body
+        load = _LOADED * body.base_radius * (self._scene.gravity + az)
         if rim.lean > _LEANS:
             self._turn(self._heading + math.atan2(rim.axis_y, rim.axis_x))
-        elif math.hypot(ax, ay) * body.mass_centre_height > _LOADED * body.base_radius * (
-            self._scene.gravity + az
-        ):
+        elif math.hypot(ax, ay) * body.mass_centre_height > load:
             self._turn(math.atan2(-ay, -ax))
 
     def _turn(self, heading: float) -> None:

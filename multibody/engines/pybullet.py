@@ -274,11 +274,8 @@ class _PybulletStepper(Leapfrog):
         place, (x, y, z, w) = bullet.getBasePositionAndOrientation(self._body, client)
         axis_x, axis_y = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)
         lean = math.hypot(axis_x, axis_y)
-        load = (
-            math.hypot(acceleration[0], acceleration[1])
-            * h
-            / (b * (self._scene.tipping_gravity + acceleration[2]))
-        )
+        push = math.hypot(acceleration[0], acceleration[1]) * h
+        load = push / (b * (self._scene.tipping_gravity + acceleration[2]))
         if self._held and load < 1.0:
             return (*place, x, y, z, w)
         self._held = False

@@ -112,37 +112,32 @@ def available_engines() -> tuple[str, ...]:
     >>> "mujoco" in available_engines()
     True
     """
-    return (*(name for name in _ENGINES if not engine_lack(name)), *_declarations())
+    return (*(name for name in _ENGINES if not _lack(name)), *_declarations())
 
 
-def engine_lack(name: str) -> str:
-    """Missing packages of an engine and how to get them, to follow its name; empty if none."""
-    entry = _ENGINES.get(name)
-    if entry is None:  # an engine declared by another package is installed
-        return ""
-    if importlib.util.find_spec(entry.module.partition(".")[0]) is None:
-        return f"is not installed here: {entry.remedy}"
-    return ""
+def _lack(name: str) -> str:
+    """Missing package of one of our engines and how to get it, to follow its name; empty if none."""
+    entry = _ENGINES[name]
+    there = importlib.util.find_spec(entry.module.partition(".")[0]) is not None
+    return "" if there else f"is not installed here: {entry.remedy}"
 
 
 def engine_fault(name: str) -> str:
     """Return why an engine does not run here, to follow its name; empty if it does.
 
-    Its package is imported, which takes some tenths of a second once.
+    Its package is imported, which takes some tenths of a second once. One that another package declares is
+    installed, and loaded by that package.
     """
-    return engine_lack(name) or _load_failure(name)
+    return (_lack(name) or _load_failure(name)) if name in _ENGINES else ""
 
 
 @cache
 def _load_failure(name: str) -> str:
     from .pybullet import quiet  # it prints as it loads
 
-    entry = _ENGINES.get(name)
-    if entry is None:  # an engine declared by another package is loaded by that package
-        return ""
     try:
         with quiet():
-            importlib.import_module(entry.module)
+            importlib.import_module(_ENGINES[name].module)
     # whatever a damaged package raises, it must not stop the other engines
     except Exception as error:
         reason = " ".join(str(error).split()) or type(error).__name__
