@@ -202,6 +202,9 @@ class Page:
             keys.update(column.key for column in (made.fitting_columns(width) if width else made.columns))
             return place(made)
 
+        def block(name: str) -> MarkdownText | str:
+            return place(MarkdownText(self.blocks[name])) if output == "html" and name in self.blocks else ""
+
         known = _environment()
         text = (
             known.from_string(self.template.read_text(encoding="utf-8"))
@@ -212,7 +215,7 @@ class Page:
                 **self.values,
                 "output": output,
                 "picture": lambda name: place(pictures[name]),
-                "block": lambda name: place(MarkdownText(self.blocks[name])) if output == "html" else "",
+                "block": block,
                 "table": table,
                 "fold": lambda title="": place(Details(title)),
                 "shows": keys.__contains__,
