@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import math
 import re
 from collections.abc import Iterator
@@ -27,12 +28,8 @@ if TYPE_CHECKING:
     from .study import Fragility
 
 _NESTED = tuple(name for name, tilt in LIMITS.items() if not math.isnan(tilt) or name == OVERTURNED)
-_NAMES = {
-    "0.1 alpha": "tenth_alpha",
-    "0.25 alpha": "quarter_alpha",
-    "0.5 alpha": "half_alpha",
-    "1 alpha": "alpha",
-}
+_NAMES = {"0.1 alpha": "tenth_alpha", "0.25 alpha": "quarter_alpha"}
+_NAMES |= {"0.5 alpha": "half_alpha", "1 alpha": "alpha"}
 # measure of a fragility: intensity measure type and words
 _TYPES = {
     "peak_acceleration": ("PGA", "peak of the horizontal resultant"),
@@ -101,25 +98,17 @@ def limits_by_function(results: Fragility) -> Iterator[tuple[str, list[Limit]]]:
                 raise ValueError(
                     f"{fit['limit']} of {method} has no curve, and no levels whose shares could stand for it"
                 )
-            counts = results.counts[
-                (results.counts["cylinder"] == cylinder)
-                & (results.counts["method"] == method)
-                & (results.counts["limit"] == fit["limit"])
-            ].sort_values("intensity")
+            counts = results.counts
+            own = (counts["cylinder"] == cylinder) & (counts["method"] == method)
+            counts = counts[own & (counts["limit"] == fit["limit"])].sort_values("intensity")
             x = unit * counts["intensity"].to_numpy(float)
             share = np.maximum.accumulate((counts["k"] / counts["n"]).to_numpy(float))
             # a level below uplift already has the share 0
             if uplift < x[0]:
                 x, share = np.r_[uplift, x], np.r_[0.0, share]
-            limits.append(
-                Limit(
-                    name=_NAMES.get(fit["limit"], fit["limit"]),
-                    median=unit * fit["median"] if known else math.nan,
-                    dispersion=float(fit["dispersion"]) if known else math.nan,
-                    intensity=x,
-                    share=share,
-                )
-            )
+            name = _NAMES.get(fit["limit"], fit["limit"])
+            median, spread = (unit * fit["median"], fit["dispersion"]) if known else (math.nan, math.nan)
+            limits.append(Limit(name=name, median=median, dispersion=spread, intensity=x, share=share))
         # identifiers of OpenQuake hold no blanks
         yield ":".join(re.sub(r"\W+", "_", str(name)) for name in (cylinder, method)), limits
 
@@ -190,10 +179,8 @@ def pelicun(results: Fragility) -> bytes:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(head)
     for label, limits in functions:
-        row: list[object] = [label, 0, demand, "mps" if imt == "PGV" else "g", 0, 0]
-        for limit in limits:
-            row += _family(limit)
-        writer.writerow(row)
+        states = itertools.chain(*map(_family, limits))
+        writer.writerow([label, 0, demand, "mps" if imt == "PGV" else "g", 0, 0, *states])
     return text.getvalue().encode()
 
 

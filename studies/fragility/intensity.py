@@ -187,16 +187,9 @@ def measures_of(
     motions: Sequence[GroundMotion], cylinder: RockingBody, *, gravity: float = 9.81, period: float = 1.0
 ) -> dict[str, list[float]]:
     """Every intensity of every motion but `OVER_FRICTION`, NaN where it has none."""
-
-    def value_or_nan(name: str, motion: GroundMotion) -> float:
-        try:
-            return intensity(name, motion, cylinder, gravity=gravity, period=period)
-        except ValueError:
-            return math.nan
-
-    return {
-        name: [value_or_nan(name, motion) for motion in motions] for name in MEASURES if name != OVER_FRICTION
-    }
+    names = [name for name in MEASURES if name != OVER_FRICTION]
+    values = {name: [_value(name, motion, cylinder, gravity, period) for motion in motions] for name in names}
+    return {name: [each if each > 0.0 else math.nan for each in of] for name, of in values.items()}
 
 
 def largest_resultant(components: Array) -> float:

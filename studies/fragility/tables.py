@@ -42,14 +42,8 @@ OVERTURNED, CONTACT_LOST, TENDON_YIELDS, SLIDES = "overturned", "contact_lost", 
 # name: the tilt that is reached [alpha]; NaN where it is no tilt that decides
 LIMITS: Mapping[str, float] = {
     "uplift": 0.0,
-    "0.1 alpha": 0.1,
-    "0.25 alpha": 0.25,
-    "0.5 alpha": 0.5,
-    "1 alpha": 1.0,
-    OVERTURNED: math.nan,
-    CONTACT_LOST: math.nan,
-    TENDON_YIELDS: math.nan,
-    SLIDES: math.nan,
+    **{f"{tilt:g} alpha": tilt for tilt in (0.1, 0.25, 0.5, 1.0)},
+    **dict.fromkeys((OVERTURNED, CONTACT_LOST, TENDON_YIELDS, SLIDES), math.nan),
 }
 YIELDED = "yielded"  # outcome of a run of which no more is known than that its tendon yields
 DEFAULT_LIMITS = tuple(name for name in LIMITS if name not in (CONTACT_LOST, TENDON_YIELDS, SLIDES))
@@ -71,20 +65,16 @@ def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
         One of `LIMITS`.
     """
     failed = (runs["outcome"].isin(NO_PEAK) | runs["outcome"].isna()).to_numpy(bool)
-    yielded = (runs["outcome"] == YIELDED).to_numpy(bool)
-    fell = (runs["outcome"] == "overturned").to_numpy(bool)
+    fell, yielded = ((runs["outcome"] == name).to_numpy(bool) for name in (OVERTURNED, YIELDED))
     if limit in (CONTACT_LOST, SLIDES):
         lost = runs[limit].to_numpy(float)
-        found = np.where(fell & ~np.isnan(lost), 1.0, lost)
-    elif limit == TENDON_YIELDS:
-        found = yielded.astype(float)
-    elif limit == OVERTURNED:
-        found = fell.astype(float)
+        exceeds = np.where(fell & ~np.isnan(lost), 1.0, lost)
+    elif limit in (TENDON_YIELDS, OVERTURNED):
+        exceeds = np.where(yielded if limit == TENDON_YIELDS else fell, 1.0, 0.0)
     else:
-        peaks = runs["peak_tilt"].to_numpy(float)
-        bound = LIMITS[limit]
-        found = (fell | (peaks > 0.0 if bound == 0.0 else peaks >= bound)).astype(float)
-    return np.where(failed | (yielded & (found != 1.0)), np.nan, found)
+        peaks, bound = runs["peak_tilt"].to_numpy(float), LIMITS[limit]
+        exceeds = np.where(fell | (peaks > 0.0 if bound == 0.0 else peaks >= bound), 1.0, 0.0)
+    return np.where(failed | (yielded & (exceeds != 1.0)), np.nan, exceeds)
 
 
 Key = tuple[str, str, str]  # cylinder, method, limit
