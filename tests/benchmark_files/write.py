@@ -49,11 +49,10 @@ def write(definition: Definition, found: Reference, folder: Path) -> None:
     _write_table(folder / "reference.csv", found.columns, digits=12)
     columns: dict[str, NDArray[np.float64]] = {}
     for run in definition.runs:
-        if run.motion is None or len(run.motion.acceleration) < _MANY:
-            continue
-        columns["time"] = run.motion.time_step * np.arange(len(run.motion.acceleration))
-        for axis, column in zip("xyz", run.motion.acceleration.T, strict=False):
-            columns[f"a{axis}{_label(definition, run)}"] = column
+        if run.motion is not None and len(run.motion.acceleration) >= _MANY:
+            columns["time"] = run.motion.time_step * np.arange(len(run.motion.acceleration))
+            for axis, column in zip("xyz", run.motion.acceleration.T, strict=False):
+                columns[f"a{axis}{_label(definition, run)}"] = column
     if columns:
         _write_table(folder / "motion.csv", columns, digits=7)
 
@@ -93,13 +92,7 @@ def _run(definition: Definition, run: BenchmarkRun) -> dict[str, Any]:
         "alpha": body.alpha,
         "transverse_inertia": body.I1,
         "axial_inertia": body.I2,
-        "start": {
-            "tilt": tilt,
-            "tilt_rate": rate,
-            "azimuth": azimuth,
-            "azimuth_rate": spin,
-            **pose(run),
-        },
+        "start": {"tilt": tilt, "tilt_rate": rate, "azimuth": azimuth, "azimuth_rate": spin} | pose(run),
         "motion": _motion(definition, run),
         "dimensionless": {
             "tan_alpha": cylinder.tan_alpha,
@@ -170,8 +163,6 @@ def _write_json(path: Path, content: Mapping[str, Any]) -> None:
 
 
 def _write_table(path: Path, columns: Mapping[str, NDArray[np.float64]], *, digits: int) -> None:
-    rows = [",".join(columns)]
-    rows += [
-        ",".join(f"{value + 0.0:.{digits}g}" for value in row) for row in np.column_stack([*columns.values()])
-    ]
+    table = np.column_stack([*columns.values()]) + 0.0
+    rows = [",".join(columns), *(",".join(f"{value:.{digits}g}" for value in row) for row in table)]
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
