@@ -210,7 +210,8 @@ def test_programs_need_numpy_only(copied: Path) -> None:
     for name in ("check", "verdict", "scoreboard"):
         code = (
             "import sys; before = set(sys.modules); sys.path.insert(0, sys.argv[1]); "
-            "__import__(sys.argv[2]); print(*sorted({m.partition('.')[0] for m in set(sys.modules) - before}))"
+            "__import__(sys.argv[2]); new = set(sys.modules) - before; "
+            "print(*sorted({name.partition('.')[0] for name in new}))"
         )
         command = [sys.executable, "-I", "-c", code, str(copied), name]
         loaded = set(subprocess.run(command, capture_output=True, text=True, check=True).stdout.split())
