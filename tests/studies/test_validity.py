@@ -15,9 +15,10 @@ import pytest
 from showing import loads_as_it_was, shows_itself
 from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 
+from rockwobble.compare.metrics.pair import make_pair, tilt_rms_relative
 from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.compare.runs.execution import simulate_run
-from rockwobble.models import Cylinder, InitialState, Run, Tendon, WobblingFrame
+from rockwobble.models import Case, Cylinder, InitialState, Run, Tendon, Trace, WobblingFrame
 from rockwobble.models.finding import Value
 from rockwobble.models.support import RECESS
 from rockwobble.reduced import body, free_response, restoring, simulate, steady_wobble_rate
@@ -38,7 +39,7 @@ from rockwobble.studies.validity.limits import (
     traces,
     vertical,
 )
-from rockwobble.studies.validity.measurements import PARTS, needs_of, tasks_of
+from rockwobble.studies.validity.measurements import PARTS, has_room, losses, needs_of, tasks_of
 from rockwobble.studies.validity.plan import (
     ALONE,
     EL_CENTRO,
@@ -327,6 +328,40 @@ def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactor
     synthetic = replace(found, facts={**found.facts, "records": source_of("synthetic 1")})
     shows_itself(synthetic, "motions synthetic records", "peaks 24 rows")
     assert found.plot("slip").axes
+
+
+SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
+# error of an engine at its default step, in the tilt against its own model, over 1.2 s
+ENGINE = 1e-4
+
+
+def off_models(trace: Trace) -> dict[str, float]:
+    """Relative RMS difference of the tilt from the models, by their support."""
+    models = {support: simulate(trace.case, support=support) for support in ("recess", "flat")}
+    return {name: tilt_rms_relative(make_pair(SQUAT, model, trace)) for name, model in models.items()}
+
+
+def test_losses_and_model_differences_identify_the_support() -> None:
+    case = Case(SQUAT, initial=InitialState(SQUAT.alpha / 2, rolling_rate=0.5), duration=1.2, friction=3.0)
+    # the release would start inside of such walls
+    assert not has_room(case, Run("mujoco", "ring", ring_inclination=0.1))
+    assert has_room(case, Run("mujoco", "ring"))
+    traces = {support: simulate_run(case, Run("mujoco", support)) for support in ("recess", "flat", "ring")}
+    off = {support: off_models(trace) for support, trace in traces.items()}
+    assert off["recess"]["recess"] < ENGINE < off["recess"]["flat"]
+    assert off["flat"]["flat"] < ENGINE < off["flat"]["recess"]
+    recess, flat, ring = (losses(trace) for trace in traces.values())
+    # in a recess the cylinder would always come down in its place, on flat ground it rolls away from it
+    assert float(recess["rolled_out"]) < 1e-5 < 1e-3 < float(flat["rolled_out"])
+    free = traces["flat"]
+    lean = np.array([math.cos(free.rolling_angle[-1]), math.sin(free.rolling_angle[-1])])
+    moved = math.hypot(*(free.contact_point[-1] / SQUAT.base_radius - lean))
+    assert flat["at_end"] == pytest.approx(moved, rel=1e-9)
+    assert flat["first_contact"] == math.inf
+    assert abs(float(flat["loss"])) < ENGINE
+    assert 0.5 < float(ring["first_contact"]) < 1.2
+    assert float(ring["contact_time"]) > 0.0
+    assert float(ring["loss"]) > 100.0 * abs(float(flat["loss"]))
 
 
 # a number of each part that a slab or a tendon changes
