@@ -204,8 +204,8 @@ def _sizes(row: Mapping[Any, Any], unit: str) -> Row:
     cells: Row = {"value": f"{number(row['value'])}{_UNITS[row['unit']]}"}
     if not math.isnan(row.get("peak", math.nan)):
         cells["peak"] = f"{number(row['peak'])}{_UNITS[row['unit']]}"
-        if not math.isnan(row["for_mass"]):
-            cells["peak"] = f"{_round(row['peak'] / row['value'] * row['for_mass'])} {unit}"
+        if not math.isnan(row.get("peak_for_mass", math.nan)):  # an earlier version stated none
+            cells["peak"] = f"{_round(row['peak_for_mass'])} {unit}"
     if not math.isnan(row["per_tonne"]):
         cells["tonne"] = f"{_round(row['per_tonne'])} {unit}/t"
         if not math.isnan(row["for_mass"]):

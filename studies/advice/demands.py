@@ -184,8 +184,8 @@ def demand_table(
         many of these do not exceed it, and overturned, how many fall; with_shear, with_force and with_moment
         of shear and of moment: what acts together where one of them is largest and none is beyond its value
         [weights, weights times b]; peak, of shear and of force, what 95 % of the runs of a group exceed at no
-        time; reason, why a value is NaN: too few runs; "yields" or, of a wall, "overturns", where that is so
-        of more than 5 % of a group, in covered runs.
+        time, and peak_for_mass [kN]; reason, why a value is NaN: too few runs; "yields" or, of a wall,
+        "overturns", where that is so of more than 5 % of a group, in covered runs.
 
         Demands: those of `demands_of` and, of the tilt, wall_height, at which the rim stands out farthest and
         a wall takes its force, and clearance, by which a vertical wall of this height must stand back [m].
@@ -193,7 +193,7 @@ def demand_table(
     facts, b = support_named(support), cylinder.base_radius
     groups = list(_groups(members))
     if not groups:
-        return pd.DataFrame(columns=[*_COLUMNS, "per_tonne", "for_mass"])
+        return pd.DataFrame(columns=[*_COLUMNS, "per_tonne", "for_mass", "peak_for_mass"])
     rows: list[dict[str, Any]] = []
     yields, falls = (_most(groups, column) for column in ("yields", "overturns"))
     moves = any(runs["tilt"].gt(0.0).any() for *_, runs in groups if facts.is_recess)
@@ -233,7 +233,8 @@ def demand_table(
     table["per_tonne"] = table["value"] * arms
     slab = cylinder.slab_mass_ratio
     carried = table["demand"].map({**dict.fromkeys(_TOP, slab), _TENDON: 1.0}).fillna(1.0 + slab)
-    table["for_mass"] = table["per_tonne"] * carried * (math.nan if mass is None else mass)
+    carried *= math.nan if mass is None else mass
+    table["for_mass"], table["peak_for_mass"] = table["per_tonne"] * carried, table["peak"] * arms * carried
     return table
 
 

@@ -250,6 +250,13 @@ def test_chatter_of_a_closed_base_is_no_change_of_the_response(found):
     assert with_table(still, "as_strong", peak_tilt=0.1).grades["intensity"] == "caution"
 
 
+def test_forces_of_a_body_at_rest_have_units_where_its_mass_is_given():
+    still = Case(Cylinder.from_dimensions(base_radius=0.8, height=9.0), el_centro_1940().scaled(0.3))
+    demanded = {row["demand"]: row for row in page_of(advise(still, copies=20, mass=45.0)).values["demanded"]}
+    assert (demanded["shear"]["mass"], demanded["shear"]["peak"]) == ("0 kN", "0 kN")
+    assert (demanded["force"]["mass"], demanded["force"]["peak"]) == ("441 kN", "441 kN")
+
+
 def test_a_sliding_body_without_uplift_is_not_called_at_rest(found):
     at_rest = {**found.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0}
     motion = {**found.facts["motion"], "friction_at_rest": 0.0859}
