@@ -278,7 +278,8 @@ def run_part(part: SpectrumPart) -> pd.DataFrame:
     ]
     probed = run_searches(probing, partial(of_one, rest_tilt=_CALM), workers=workers)
     table = pd.DataFrame(probed, columns=["lowest", "below"], dtype=float)
-    return table.assign(**{str(place): column for place, column in enumerate(peaks.T)})
+    of_levels = pd.DataFrame(peaks, columns=[str(place) for place in range(len(levels))], dtype=float)
+    return pd.concat([table, of_levels], axis=1)
 
 
 def blocks_of_sizes(count: int) -> list[range]:
