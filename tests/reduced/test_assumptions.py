@@ -8,14 +8,13 @@ import pytest
 from rockwobble import reduced
 from rockwobble.models import CLOSED_TILT, Case, Cylinder, GroundMotion, InitialState
 
-SQUAT = Cylinder(semidiagonal=2.0, tan_alpha=3.0)
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 def test_steady_wobble_needs_the_friction_of_its_centripetal_force():
-    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    tilt = 0.5 * pier.alpha
-    rate = reduced.steady_wobble_rate(pier, tilt)
-    response = reduced.simulate(Case(pier, initial=InitialState(tilt, rolling_rate=rate), duration=2.0))
+    tilt = 0.5 * PIER.alpha
+    rate = reduced.steady_wobble_rate(PIER, tilt)
+    response = reduced.simulate(Case(PIER, initial=InitialState(tilt, rolling_rate=rate), duration=2.0))
     radius = math.hypot(*response.centre_of_mass[0, :2])
     review = response.assumptions
     # the mass centre goes round on a circle at constant height: N is the weight
@@ -26,16 +25,15 @@ def test_steady_wobble_needs_the_friction_of_its_centripetal_force():
 
 
 def test_a_cylinder_that_stands_demands_nothing_of_the_model():
-    still = reduced.simulate(Case(SQUAT, GroundMotion(np.zeros((10, 2)), 0.1)))
+    still = reduced.simulate(Case(PIER, GroundMotion(np.zeros((10, 2)), 0.1)))
     assert still.assumptions.all_hold
     assert still.assumptions.largest_friction_needed == 0.0
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10, 1e-12])
 def test_contact_loss_shorter_than_a_step_is_reported(rtol):
-    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    initial = InitialState(1.5 * pier.alpha, rolling_angle=0.3, rolling_rate=0.1)
-    review = reduced.simulate(Case(pier, initial=initial, duration=5.0, friction=0.6), rtol=rtol).assumptions
+    initial = InitialState(1.5 * PIER.alpha, rolling_angle=0.3, rolling_rate=0.1)
+    review = reduced.simulate(Case(PIER, initial=initial, duration=5.0, friction=0.6), rtol=rtol).assumptions
     assert review.least_normal_force < 0.0
     assert [breach.code for breach in review.breaches] == ["tension", "friction_needed"]
     assert (review.breaches[0].size, review.breaches[0].bound) == (review.least_normal_force, 0.0)
@@ -47,12 +45,11 @@ def test_contact_loss_shorter_than_a_step_is_reported(rtol):
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_demands_are_those_of_an_open_base(support, length):
     """Extrema over the motion are those of its samples with an open base, however near upright it passes."""
-    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    release = InitialState(0.3 * pier.alpha, rolling_rate=1e-4)
-    case = Case(pier, initial=release, duration=5.0, rolling_resistance=length)
+    release = InitialState(0.3 * PIER.alpha, rolling_rate=1e-4)
+    case = Case(PIER, initial=release, duration=5.0, rolling_resistance=length)
     response = reduced.simulate(case, support=support, sample_step=2e-4)
     review, opens = response.assumptions, response.open_base
-    assert (response.tilt[opens] >= CLOSED_TILT * pier.alpha).all()
+    assert (response.tilt[opens] >= CLOSED_TILT * PIER.alpha).all()
     assert np.count_nonzero(~opens & (response.tilt > 0.0)) > 0
     force = response.contact_force
     # samples of 0.2 ms miss what the base feels as it closes by some percent
