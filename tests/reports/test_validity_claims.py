@@ -39,47 +39,34 @@ def test_the_published_page_is_drawn_word_for_word(found: Validity) -> None:
 def test_captions_of_maps_say_of_how_many_records_a_cell_is(found: Validity) -> None:
     peaks = found.tables["peaks"]
     peaks = peaks[peaks["motion"] != "El Centro 1940"]
-    alpha = np.arctan(peaks["tan_alpha"])
-    fell = pd.DataFrame({name: peaks[name] * alpha >= 1.57 for name in ("flat", "recess", "copy")})
+    fell = peaks[["flat", "recess", "copy"]].mul(np.arctan(peaks["tan_alpha"]), axis="index") >= 1.57
+    moves = peaks["least_normal"].notna()
+    shown = {
+        "bias": ("flat_ratio", ~(fell["flat"] & fell["recess"])),
+        "spread": ("flat_90", ~(fell["flat"] & fell["recess"])),
+        "sensitivity": ("copy_90", ~(fell["copy"] & fell["recess"])),
+        "need-friction": ("friction_90", moves),
+        "need-contact": ("normal_10", moves),
+        "need-moment": ("moment_90", moves),
+    }
     table = cells(found.tables).set_index(POINT)
     drawn = {picture.name: picture for picture in map_pictures(found.tables)}
-
-    def empty_below(name: str, column: str, known: pd.Series[bool]) -> None:
+    for name, (column, known) in shown.items():
         counts = known.groupby([peaks[axis] for axis in POINT]).sum()
         assert counts.max() == peaks.groupby(POINT).size().max() > counts.min()
         (fewest,) = re.findall(r"up to 22 .*; gray: (?:fewer than (\d+)|none)", worded(drawn[name]))
         pd.testing.assert_series_equal(
             table[column].isna(), (counts < int(fewest or 1)).reindex(table.index), check_names=False
         )
-
-    for name, column, other in (
-        ("bias", "flat_ratio", "flat"),
-        ("spread", "flat_90", "flat"),
-        ("sensitivity", "copy_90", "copy"),
-    ):
-        empty_below(name, column, ~(fell[other] & fell["recess"]))
-    for name, column in (
-        ("need-friction", "friction_90"),
-        ("need-contact", "normal_10"),
-        ("need-moment", "moment_90"),
-    ):
-        empty_below(name, column, peaks["least_normal"].notna())
+    shades = drawn["bias"].shades
+    assert shades is not None
+    assert (shades.low, shades.high) == (-50.0, 50.0)
+    assert "beyond ±50 %" in worded(drawn["bias"])
 
 
 def worded(picture: Picture) -> str:
     assert isinstance(picture.caption, Finding)
     return sentence(picture.caption)
-
-
-def shades_end(picture: Picture) -> tuple[float, float]:
-    assert picture.shades is not None
-    return picture.shades.low, picture.shades.high
-
-
-def test_the_map_of_the_bias_says_where_its_colours_end(found: Validity) -> None:
-    (bias,) = (picture for picture in map_pictures(found.tables) if picture.name == "bias")
-    assert shades_end(bias) == (-50.0, 50.0)
-    assert "beyond ±50 % as at ±50 %" in worded(bias)
 
 
 def test_open_marks_are_explained_where_there_are_some(found: Validity) -> None:
