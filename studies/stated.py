@@ -76,20 +76,16 @@ def condition_findings(facts: Facts) -> Iterator[Finding]:
     tendon = facts.get("tendon") or {
         name: facts.get(f"tendon_{name}", 0.0) for name in ("prestress", "stiffness")
     }
-    terms = {name: facts.get(name) for name in of_case.TERMS if name != "tendon"}
-    stated: dict[str, Any] = {"slab_mass_ratio": facts.get("slab_mass_ratio"), **terms, "tendon": tendon}
-    stated["gravity"] = facts.get("gravity", _GRAVITY)
-    for name, value in stated.items():
+    stated: dict[str, Any] = {name: facts.get(name) for name in ("slab_mass_ratio", *of_case.TERMS)}
+    for name, value in {**stated, "tendon": tendon, "gravity": facts.get("gravity", _GRAVITY)}.items():
         if value == DIFFERS:
             yield _stated("differs", name=f"condition_{name}")
-        elif name == "gravity":
-            if value != _GRAVITY:
-                yield _stated("gravity", given=value)
-        elif name == "tendon":
-            if any(value.values()):
-                given = {"given": value["prestress"], "given_stiffness": value["stiffness"]}
-                yield _stated("tendon", **given, bound=value.get("yield_force") or math.nan)
-        elif not value:
+        elif name == "gravity" and value != _GRAVITY:
+            yield _stated("gravity", given=value)
+        elif name == "tendon" and any(value.values()):
+            given = {"given": value["prestress"], "given_stiffness": value["stiffness"]}
+            yield _stated("tendon", **given, bound=value.get("yield_force") or math.nan)
+        elif name in ("gravity", "tendon") or not value:
             continue
         elif name == "slab_mass_ratio":
             yield _stated("slab", ratio=value, count=math.nan)

@@ -158,21 +158,16 @@ class Sweep(Results, kind=KIND):
         """Findings: what was run, and the number of runs by outcome."""
         plan = self.facts
         values: dict[str, Value] = {"runs": len(self.table)}
-        if "model" in self.table:
-            axes = {"length": "semidiagonals", "ratio": "tan_alphas", "factor": "scales"}
-            for name, axis in axes.items():
+        if of_grid := "model" in self.table:
+            for name, axis in (("length", "semidiagonals"), ("ratio", "tan_alphas"), ("factor", "scales")):
                 values |= {f"count_{name}": len(plan[axis]), name: min(plan[axis])}
                 values[f"{name}_end"] = max(plan[axis])
             values |= {"count_motions": len(plan["motions"]), "names": tuple(plan["models"])}
         else:
             values |= {"count": len(plan["cases"]), "count_of_each": len(plan["runs of each"])}
         ended = {f"count_{name}": value for name, value in self.headline().items() if name != "runs"}
-        return Findings(
-            [
-                Finding(key="sweep.grid" if "model" in self.table else "sweep.cases", values=values),
-                Finding(key="sweep.ended", values=ended),
-            ]
-        )
+        swept = Finding(key="sweep.grid" if of_grid else "sweep.cases", values=values)
+        return Findings([swept, Finding(key="sweep.ended", values=ended)])
 
     @property
     def keys(self) -> list[str]:
@@ -192,16 +187,17 @@ class Sweep(Results, kind=KIND):
         throughout), and in alpha median, in which an overturned run is infinite, NaN of fewer than six, and
         largest, of those that do not overturn.
         """
-        rows, outcomes = [], self.outcomes
+        rows = []
         for key, own in self.table.groupby(self.keys, sort=False):
             fell, peaks = own["outcome"] == "overturned", own["peak_tilt_over_alpha"]
+            median = peaks.mask(fell, math.inf).median()
             rows.append(
                 {
                     **dict(zip(self.keys, key, strict=True)),
                     "runs": len(own),
-                    **{name: int((own["outcome"] == name).sum()) for name in outcomes},
+                    **{name: int((own["outcome"] == name).sum()) for name in self.outcomes},
                     "no_uplift": int((peaks == 0.0).sum()),
-                    "median": value_if_enough(peaks.mask(fell, math.inf).median(), int(peaks.notna().sum())),
+                    "median": value_if_enough(median, int(peaks.notna().sum())),
                     "largest": peaks[~fell].max(),
                 }
             )
