@@ -7,7 +7,6 @@ deviation).
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
@@ -36,8 +35,7 @@ from rockwobble.compare.metrics.statistics import (
 ROUNDING = 1e-12
 COUNT = 22  # far-field pairs of FEMA P-695
 TRIALS = 2000
-# coverage asked of an interval of 95 %, and the level asked of a test at 5 %
-COVERAGE, LEVEL = (0.92, 0.97), 0.06
+LEVEL = 0.06  # asked of a test at 5 %
 UP = np.zeros(COUNT, dtype=bool)
 
 
@@ -51,39 +49,11 @@ def sample(seed: int) -> np.ndarray:
     return np.random.default_rng(seed).lognormal(sigma=0.8, size=COUNT)
 
 
-def ensembles(
-    *,
-    shift: float,
-    scatter: float,
-    limit: float = math.inf,
-    tied: float = 0.0,
-    count: int = COUNT,
-    seed: int = 0,
-):
-    """Peaks by two methods, shape (TRIALS, count): the same records, half of the scatter in each method.
-
-    What exceeds the limit overturns, and of a share `tied` both peaks are the same.
-    """
+def ratios_of(*, shift: float, scatter: float, count: int = COUNT, seed: int = 0) -> np.ndarray:
+    """Log ratios of ensembles (TRIALS, count): the same records, half of the scatter in each method."""
     random = np.random.default_rng(seed)
-    shape = (TRIALS, count)
-    record = random.lognormal(-1.2, 0.8, shape)
-    first, second = (np.exp(scatter / math.sqrt(2.0) * random.standard_normal(shape)) for _ in range(2))
-    first *= math.exp(shift)
-    first[random.random(shape) < tied] = 1.0
-    second[first == 1.0] = 1.0
-    peaks, against = record * first, record * second
-    return peaks, against, peaks > limit, against > limit
-
-
-def ratios_of(made) -> list[np.ndarray]:
-    """Log ratios of each ensemble, of the members that have one."""
-    return [row[~np.isnan(row)] for row in Pairs(*made).log_ratios()]
-
-
-def coverage(samples: list[np.ndarray], share: float, truth: float) -> float:
-    found = [quantile_interval(values, share) for values in samples]
-    assert all(item.low <= item.value <= item.high for item in found if not math.isnan(item.value))
-    return float(np.mean([item.low <= truth <= item.high for item in found]))
+    first, second = scatter / math.sqrt(2.0) * random.standard_normal((2, TRIALS, count))
+    return shift + first - second
 
 
 def test_signed_ranks_are_those_of_scipy_where_it_is_exact():
@@ -97,29 +67,6 @@ def test_signed_ranks_are_those_of_scipy_where_it_is_exact():
     assert signed_rank_p(tied) == pytest.approx(expected, abs=ROUNDING)
     assert signed_rank_p(np.where(tied == 9.0, math.inf, tied)) == pytest.approx(expected, abs=ROUNDING)
     assert signed_rank_p(np.zeros(4)) == signed_rank_p(np.array([])) == 1.0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("limit", [math.inf, 0.6], ids=["standing", "a quarter overturned"])
-@pytest.mark.parametrize("tied", [0.0, 0.3])
-def test_the_tests_keep_their_level_where_there_is_no_difference(limit, tied):
-    made = ensembles(shift=0.0, scatter=0.3, limit=limit, tied=tied, seed=3)
-    assert np.mean([signed_rank_p(values) < 0.05 for values in ratios_of(made)]) <= LEVEL
-    fell, there = made[2:]
-    only, only_there = (fell & ~there).sum(axis=1), (there & ~fell).sum(axis=1)
-    p = cache(mcnemar_p)  # of few counts, many times each
-    told = [p(int(a), int(b)) < 0.05 for a, b in zip(only, only_there, strict=True)]
-    assert np.mean(told) <= LEVEL
-
-
-def test_the_interval_of_the_median_has_its_coverage_with_ties():
-    away = ensembles(shift=0.3, scatter=0.3, tied=0.2, seed=6)
-    truth = float(np.median(np.concatenate(ratios_of(away))))
-    assert abs(truth) > 0.1  # ties beside the median
-    assert COVERAGE[0] <= coverage(ratios_of(away), 0.5, truth) <= COVERAGE[1]
-    at_it = ratios_of(ensembles(shift=0.0, scatter=0.3, tied=0.2, seed=6))
-    # an interval that ends at a tie contains it: more than its coverage, for every interval of this kind
-    assert coverage(at_it, 0.5, 0.0) >= COVERAGE[0]
 
 
 @pytest.mark.parametrize("count", [6, 22, 301])
@@ -180,7 +127,7 @@ def test_agreement_is_claimed_by_the_interval_alone():
     # at the margin itself it would be wrong, and is claimed no more often than an interval is wrong
     edge = math.log(1.0 + MARGIN)
     claimed = []
-    for values in ratios_of(ensembles(shift=edge, scatter=0.03, seed=8)):
+    for values in ratios_of(shift=edge, scatter=0.03, seed=8):
         found = quantile_interval(values, 0.5)
         claimed.append(-edge <= found.low and found.high <= edge)
     assert np.mean(claimed) <= LEVEL
@@ -200,8 +147,8 @@ def test_a_ratio_within_reach_is_told_with_its_power(count):
     # the members that the reach is taken from are as many as in each ensemble, and scattered as the law
     scatter = 0.3 * norm.ppf((np.arange(count) + 0.5) / count)
     reach = ratio_within_reach(scatter)
-    made = ensembles(shift=math.log(reach), scatter=0.3, count=count, seed=10)
-    told = np.mean([quantile_interval(values, 0.5).low > 0.0 for values in ratios_of(made)])
+    ratios = ratios_of(shift=math.log(reach), scatter=0.3, count=count, seed=10)
+    told = np.mean([quantile_interval(values, 0.5).low > 0.0 for values in ratios])
     index = end_index(count, 0.5, 0.5 * (1.0 - CONFIDENCE))
     assert index is not None
     needed = betaincinv(count + 1 - index, index, POWER)
@@ -247,16 +194,6 @@ def test_who_overturns_by_one_method_alone_decides():
     fell = np.arange(COUNT) < 8
     assert contrast_of(sample(1), sample(2), fell, np.roll(fell, 8)).overturned_p == 1.0
     assert contrast_of(sample(1), sample(2), fell, UP).overturned_p == pytest.approx(2.0**-7, abs=ROUNDING)
-
-
-@pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.4, 0.3)])
-def test_the_interval_of_a_difference_of_shares_has_its_coverage(only, only_there):
-    rest = 1.0 - only - only_there
-    counts = np.random.default_rng(11).multinomial(COUNT, [only, only_there, rest], size=TRIALS)
-    found = [paired_difference(int(first), int(second), COUNT) for first, second, _ in counts]
-    inside = np.mean([item.low <= only - only_there <= item.high for item in found])
-    # counts are whole: no interval of a share has exactly its coverage; this one leans to the safe side
-    assert COVERAGE[0] <= inside <= 0.99
 
 
 def test_the_interval_of_a_difference_of_shares_contains_it():
