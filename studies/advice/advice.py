@@ -393,9 +393,8 @@ def advise(
         if run.support != plan.support:
             raise ValueError(f"support must be that of the run, {run.support}, got {plan.support}")
         require_runnable(case, run)
-    model, other = Run(None, plan.support).compared_with[-1], FLAT_MODEL
-    if model == other:
-        other = RECESS_MODEL
+    model = Run(None, plan.support).compared_with[-1]
+    other = RECESS_MODEL if model == FLAT_MODEL else FLAT_MODEL
     inputs = fingerprint(
         [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
     )
