@@ -262,8 +262,8 @@ def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tupl
     return values[: len(values) - count], (note,)
 
 
-def without_filled_end(component: Component) -> Component:
-    """Return a component without fill values after its last sample.
+def without_filled_end(component: Component, *, cut: bool) -> Component:
+    """Return a component without fill values after its last sample, or refuse it where they are not cut.
 
     Raises
     ------
@@ -271,6 +271,9 @@ def without_filled_end(component: Component) -> Component:
         If one stands among its samples: the sample is missing, and no other number would be right.
     """
     values, notes = without_fill(component.values)
+    if notes and not cut:
+        last = float(component.values[-1])
+        raise ValueError(f"{component.path.name} ends in fill values of {last:g}: leave out their rows")
     if notes:
         component = replace(component, values=values, notes=(*component.notes, *notes))
     largest = float(np.abs(values).max())

@@ -346,6 +346,13 @@ def test_three_files_of_esm_are_one_record(tmp_path: Path) -> None:
         np.testing.assert_allclose(motion.acceleration[:, place], PARTS[axis] / 100.0, rtol=0, atol=1e-12)
 
 
+def test_fill_values_behind_the_last_sample_are_left_out(tmp_path: Path) -> None:
+    filled = {axis: np.append(values[:-2], [-9999.9, -9999.9]) for axis, values in PARTS.items()}
+    for part in components(tmp_path, "jma.csv", networks.jma(filled)):
+        assert_read(part, PARTS[str(part.direction)][:-2], "cm/s2")
+        assert "2 fill values of -9999.9" in part.notes[-1]
+
+
 def test_a_step_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "afad.txt"
     path.write_text(networks.afad(PARTS))

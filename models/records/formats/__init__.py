@@ -112,6 +112,6 @@ def read_components(file: RecordFile, reading: Reading) -> list[Component]:
                 components = as_named(components, reading.column_texts, file.name)
             for component in components:  # a step that the user gives must be that of the file
                 reading.settled_step(component.path.name, component.time_step)
-            return [without_filled_end(component) for component in components]
+            return [without_filled_end(component, cut=reader is not text) for component in components]
     file.text  # noqa: B018 - says that the file is binary where it is
     raise ValueError(f"{file.name} has no format that can be read")
