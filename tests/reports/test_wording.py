@@ -47,8 +47,14 @@ def texts_of_code() -> set[object]:
 def test_keys_in_the_code_are_those_of_the_word_file():
     lines = {key.partition(":")[0] for key in SENTENCES}
     assert keys_in_code() <= lines
-    texts = texts_of_code()  # of some keys the name is put behind the group, as "mode."
-    assert not [key for key in lines if not texts & {key, f"{key.partition('.')[0]}."}]
+    texts = texts_of_code()
+
+    def parts(key: str) -> set[str]:
+        """Texts in the code that may make a key, as "mode." or the name of a criterion."""
+        group, _, name = key.partition(".")
+        return {key, f"{group}.", name, key.removeprefix("limit_")}
+
+    assert not [key for key in lines if not texts & parts(key)]
 
 
 def values_of(line: str, number: Value, text: Value) -> dict[str, Value]:
