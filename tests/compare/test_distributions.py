@@ -184,6 +184,14 @@ def test_overturned_members_are_larger_than_all_and_failed_ones_do_not_count():
     assert Pairs(peaks[4:], against[4:], fell[4:], fell_there[4:]).contrast() is None  # of one member
 
 
+def test_bounds_of_a_ratio_allow_failed_members_any_fate():
+    ratios = np.array([0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, math.nan])
+    stands = np.zeros(8, dtype=bool)
+    assert Pairs(ratios, np.ones(8), stands, stands).ratio_bounds() == pytest.approx(
+        (math.sqrt(1.0 * 1.1), math.sqrt(1.1 * 1.2)), rel=ROUNDING
+    )
+
+
 def test_who_overturns_by_one_method_alone_decides():
     assert mcnemar_p(6, 0) == pytest.approx(2.0**-5, abs=ROUNDING)
     assert mcnemar_p(0, 0) == 1.0

@@ -49,5 +49,6 @@ def test_engine_closes_as_the_planar_model_by_momentum() -> None:
     found = rw.comparison(case, runs=[rw.Run("mujoco", "flat", 2e-4)], workers=1)
     (row,) = found.summary.itertuples()
     assert (row.reference, row.mode) == ("planar model by momentum", "rocks in one plane")
+    assert {label for _, label in found.traces} == {row.run, row.reference}  # which is its own model as well
     assert not row.diverged
     assert row.peak_tilt_difference == pytest.approx(0.0, abs=0.005)  # of 0.13 alpha
