@@ -16,7 +16,7 @@ from rockwobble.compare.check import Result, check, external_model, suite
 from rockwobble.compare.check.measurement import release_case
 from rockwobble.compare.check.suite import SuiteRuns, check_suite
 from rockwobble.compare.runs.execution import Job
-from rockwobble.models import Case, Cylinder, Run, Suite, Trace, el_centro_1940, p695_far_field
+from rockwobble.models import Bounds, Case, Cylinder, Run, Suite, Trace, el_centro_1940, p695_far_field
 from rockwobble.models.cylinder import PIER
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import standard_engines
@@ -201,3 +201,10 @@ def test_the_runs_of_a_suite_are_asked_before_one_starts() -> None:
     assert {result.group for result in done.results} == {"agreement"}
     with pytest.raises(ValueError, match="time_step must be at most"):
         check(suite=Suite([release], [Run("mujoco", "recess"), Run("mujoco", "recess", 1.0)]), workers=1)
+
+
+def test_the_reference_of_a_run_is_what_its_bounds_state() -> None:
+    run = Run("mujoco", "flat")
+    stated = [None, Bounds(tilt_rms_relative=0.01), Bounds(tilt_rms_relative=0.01, reference="recess")]
+    models = [suite.reference_of(run, bounds) for bounds in stated]
+    assert models == [Run(None, "flat"), Run(None, "flat"), Run(None, "recess")]
