@@ -116,6 +116,15 @@ def test_a_run_exceeds_the_limits_below_its_peak():
         np.testing.assert_array_equal(exceedance(table, limit), np.array(values, dtype=float))
 
 
+def test_only_one_of_several_bodies_is_stated_with_its_size(found):
+    (body,) = (each for each in found.findings() if each.key == "fragility.body")
+    assert set(body.values) == {"name", "factor"}
+    facts = {**found.facts, "cylinders": dict.fromkeys("ab", found.facts["cylinders"][body.runs])}
+    several = Fragility(tables=found.tables, facts=facts).findings().to_frame()
+    sizes = several[(several["key"] == "fragility.body") & (several["name"] == "length")]
+    assert list(sizes["value"]) == [3.0, 3.0]
+
+
 def test_gaps_and_what_stopping_early_makes_of_them():
     y = np.array([[0, 1, 0, 1], [0, 0, 1, 1], [1, NAN, 0, 0], [0, NAN, 1, NAN], [1, 0, 1, 0]], dtype=float)
     found = below_gaps(y)
