@@ -227,15 +227,15 @@ def find_step(
     return replace(_report(best, entries, verdict, alpha), wall_time=spent)
 
 
-def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
+def _judge(distances: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
     """Return why to stop ("": tilt has settled, None: go on), and whether the last run is better."""
-    last = found[-1]
+    last = distances[-1]
     close = last.difference <= tolerance
     if math.isinf(last.divergence) and close:
         return "", True
-    if len(found) < 2:
+    if len(distances) < 2:
         return None, True
-    before = found[-2]
+    before = distances[-2]
     if last.divergence > before.divergence * _PUT_OFF:
         return None, True
     if math.isfinite(last.divergence):
@@ -247,28 +247,28 @@ def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
     return None, True
 
 
-def _estimate(found: list[Closeness]) -> tuple[float, float]:
+def _estimate(distances: list[Closeness]) -> tuple[float, float]:
     """Return Richardson's estimate of the error that is left [rad], and the order that it rests on."""
-    last = found[-1]
+    last = distances[-1]
     order = 1.0
-    if len(found) > 1 and last.difference > 0.0 and found[-2].until >= last.until / _PUT_OFF:
-        order = order_between(max(found[-2].difference, 1e-300), last.difference)
+    if len(distances) > 1 and last.difference > 0.0 and distances[-2].until >= last.until / _PUT_OFF:
+        order = order_between(max(distances[-2].difference, 1e-300), last.difference)
     order = min(max(order, _ORDERS[0]), _ORDERS[1])
     return error_left(last.difference, order), order
 
 
-def _report(run: Trace, found: list[Closeness], verdict: str, alpha: float) -> Trace:
+def _report(run: Trace, distances: list[Closeness], verdict: str, alpha: float) -> Trace:
     """The run with what halving found; `verdict` says why it has not settled, and is empty if it has."""
-    if not found:
+    if not distances:
         fact = Diagnostic(code="unsettled", detail=verdict)
         return run if run.outcome == "failed" else replace(run, facts=(*run.facts, fact))
-    last = found[-1]
+    last = distances[-1]
     unknown, code = unknown_from(run)
     verdict = verdict or (code if math.isfinite(unknown) else "")
     if verdict:
         error = math.nan
         fact = Diagnostic(code="unsettled", duration=last.until, size=last.difference / alpha, detail=verdict)
     else:
-        error, order = _estimate(found)
+        error, order = _estimate(distances)
         fact = Diagnostic(code="settled", duration=last.until, size=error / alpha, bound=order)
     return replace(run, error_estimate=error, settled_until=last.until, facts=(*run.facts, fact))

@@ -163,11 +163,11 @@ def _merge(pair: Sequence[Trace], order: int, good: int) -> Trace:
 
 
 def _samples(values: Sequence[Array], order: int, good: int, kept: NDArray[np.bool_]) -> Array:
-    found = values[-1].copy()
+    angles = values[-1].copy()
     reached = to_zero_step([value[:good] for value in values], order)
-    reached[kept] = found[:good][kept]
-    found[:good] = np.where(np.isfinite(reached), reached, found[:good])
-    return found
+    reached[kept] = angles[:good][kept]
+    angles[:good] = np.where(np.isfinite(reached), reached, angles[:good])
+    return angles
 
 
 def _number(pair: Sequence[Trace], name: str, order: int) -> float:
@@ -190,9 +190,9 @@ def _rows(tables: Sequence[Array], order: int) -> Array:
     coarse, fine = tables
     if len(coarse) != len(fine) or (coarse[:, 3] != fine[:, 3]).any():
         return fine
-    found = to_zero_step(tables, order)
-    found[:, 2] = to_zero_step(_one_branch([table[:, 2] for table in tables]), order)
-    return found
+    limits = to_zero_step(tables, order)
+    limits[:, 2] = to_zero_step(_one_branch([table[:, 2] for table in tables]), order)
+    return limits
 
 
 def _passes(tables: Sequence[pd.DataFrame], order: int, end: float) -> pd.DataFrame:

@@ -80,8 +80,8 @@ def _first(time: Array, force: Array, breaks: Callable[[Array], NDArray[np.bool_
     # not in single steps: where an engine pushes the rim out of the ground, the next step takes that back
     kernel = np.full(HALF_WINDOW, 1.0 / HALF_WINDOW)
     mean = np.array([np.convolve(component, kernel, mode="same") for component in force])
-    found = np.flatnonzero(breaks(mean))
-    return float(time[found[0]]) if len(found) else float("nan")
+    losses = np.flatnonzero(breaks(mean))
+    return float(time[losses[0]]) if len(losses) else float("nan")
 
 
 class ForceSamples:
@@ -123,8 +123,8 @@ class ForceSamples:
 
     def at(self, times: Array) -> Array:
         """Return the force at the samples that a run has reached, and at its end, shape (n, 3)."""
-        found = np.vstack([*self._found, np.empty((0, 3))])[: len(times)]
-        return np.vstack([found, self._means(times[len(found) :])])
+        forces = np.vstack([*self._found, np.empty((0, 3))])[: len(times)]
+        return np.vstack([forces, self._means(times[len(forces) :])])
 
     def _means(self, times: Array) -> Array:
         """Means about `times` (n,), over the part of the window that is known, shape (n, 3)."""

@@ -177,12 +177,12 @@ def _is_ours(folder: Path) -> bool:
     """Return whether nobody else writes to a folder, made where it is missing: it holds code that runs."""
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
-        found = folder.lstat()
+        place = folder.lstat()
     except OSError:
         return False
     if not hasattr(os, "getuid"):
         return folder.is_dir()
-    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o022
+    return stat.S_ISDIR(place.st_mode) and place.st_uid == os.getuid() and not place.st_mode & 0o022
 
 
 def _borrow(typing: Any, array: Any) -> Any:

@@ -210,8 +210,8 @@ def _yield(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
     before = turns[turns[:, 0] < after, 0].max(initial=0.0)
     for _ in range(_ROUNDS):
         times = np.linspace(before, min(after, result.end), _DIVISIONS + 1)
-        found, _azimuth = problem.solve(times)
-        tilts = found.samples[: found.reached, 0]
+        solution, _azimuth = problem.solve(times)
+        tilts = solution.samples[: solution.reached, 0]
         first = [tendon.tension(case.cylinder, tilt) > tendon.yield_force for tilt in tilts]
         place = int(np.argmax(first)) if any(first) else len(tilts) - 1
         before, after = times[max(place - 1, 0)], times[place]

@@ -79,12 +79,12 @@ class Solution(CompactRepr):
 
     def quantities(self) -> Mapping[str, Array]:
         """Return rolling rate, energy, contact force and restraining moment at the samples."""
-        found, top = self._derive(self.time, self.states)
+        quantities, top = self._derive(self.time, self.states)
         return {
-            "rolling_rate": found[:, forces.ROLLING_RATE],
-            "energy": found[:, forces.ENERGY],
-            "contact_force": found[:, forces.FORCE_X : forces.FORCE_Z + 1],
-            "restraining_moment": found[:, forces.MOMENT],
+            "rolling_rate": quantities[:, forces.ROLLING_RATE],
+            "energy": quantities[:, forces.ENERGY],
+            "contact_force": quantities[:, forces.FORCE_X : forces.FORCE_Z + 1],
+            "restraining_moment": quantities[:, forces.MOMENT],
             "energy_lost": self._lost_at_impacts() if self.energy_lost is None else self.energy_lost,
         } | ({} if top is None else {"top_contact_force": top})
 
@@ -125,7 +125,7 @@ class Solution(CompactRepr):
 
         time, tilt, angle, kind = self.extrema.T
         motion = np.searchsorted(self.rest_intervals[:, 0], time)  # number of rests before
-        found = (
+        at = (
             (kind[1:-1] == MINIMUM)
             & (kind[:-2] == MAXIMUM)
             & (kind[2:] == MAXIMUM)
@@ -133,10 +133,10 @@ class Solution(CompactRepr):
             & (np.minimum(tilt[:-2], tilt[2:]) > tilt[1:-1] * (1.0 + 100.0 * self.problem.rtol))
         )
         columns = (
-            time[1:-1][found],
-            tilt[1:-1][found],
-            (angle[2:] - angle[:-2])[found],
-            np.ones(np.count_nonzero(found), dtype=bool),
+            time[1:-1][at],
+            tilt[1:-1][at],
+            (angle[2:] - angle[:-2])[at],
+            np.ones(np.count_nonzero(at), dtype=bool),
         )
         # made at once and named after: names take longer than many a run
         table = pd.DataFrame(dict(enumerate(columns)))
@@ -216,30 +216,30 @@ def review(
     edges = np.unique(np.concatenate([steps, jumps, np.nextafter(jumps, math.inf)]))
     parts = max(_LEAST_PARTS, min(_PARTS, _MOST_TIMES // len(edges)))
     times = np.unique(_subdivision(edges, parts))
-    found = demands_at(times)
-    if not found.open_base.any():
+    samples = demands_at(times)
+    if not samples.open_base.any():
         return Assumptions(friction=friction)
 
-    def slips(found: Demands) -> NDArray[np.bool_]:
+    def slips(demands: Demands) -> NDArray[np.bool_]:
         # where contact is lost it is that which is said
-        return found.open_base & (found.normal > 0.0) & (found.friction > friction)
+        return demands.open_base & (demands.normal > 0.0) & (demands.friction > friction)
 
     def largest(quantity: Callable[[Demands], Array]) -> tuple[float, float]:
-        return _largest(quantity, demands_at, times, found)
+        return _largest(quantity, demands_at, times, samples)
 
     pull, pulled = largest(lambda demands: -demands.normal)
     need, needed = largest(lambda demands: demands.friction)
     normal, _ = largest(lambda demands: demands.load)
     moment, _ = largest(lambda demands: np.abs(demands.moment))
-    if (pull >= 0.0 and not _contact_loss(found).any()) or (need > friction and not slips(found).any()):
+    if (pull >= 0.0 and not _contact_loss(samples).any()) or (need > friction and not slips(samples).any()):
         # a breach that is shorter than a part of a step
         times = np.union1d(times, [pulled, needed])
-        found = demands_at(times)
+        samples = demands_at(times)
     breaches = []
-    if _contact_loss(found).any():
-        breaches.append(_breach("tension", _contact_loss, demands_at, times, found, -pull, 0.0))
-    if slips(found).any():
-        breaches.append(_breach("friction_needed", slips, demands_at, times, found, need, friction))
+    if _contact_loss(samples).any():
+        breaches.append(_breach("tension", _contact_loss, demands_at, times, samples, -pull, 0.0))
+    if slips(samples).any():
+        breaches.append(_breach("friction_needed", slips, demands_at, times, samples, need, friction))
     return Assumptions(
         breaches=tuple(breaches),
         least_normal_force=-pull,

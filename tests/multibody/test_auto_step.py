@@ -147,8 +147,8 @@ def test_closeness_knows_an_end_before_the_other() -> None:
 def test_closeness_ends_at_the_last_pass_before_a_divergence() -> None:
     fine = trace_of(np.full(50, 0.1), passes=(0.05, 0.1, 0.2, 0.4))
     off = np.where(fine.time < 0.15, 1e-6, np.where(fine.time < 0.3, 2e-6, 0.1))
-    found = closeness(trace_of(fine.tilt + off), fine, ALPHA)
-    assert found == Closeness(pytest.approx(2e-6), pytest.approx(0.2), pytest.approx(0.3))
+    distance = closeness(trace_of(fine.tilt + off), fine, ALPHA)
+    assert distance == Closeness(pytest.approx(2e-6), pytest.approx(0.2), pytest.approx(0.3))
 
 
 @pytest.mark.parametrize(

@@ -122,6 +122,6 @@ def test_a_squat_cylinder_falls_flat_and_rests(engine: str, time_step: float | N
 @pytest.mark.parametrize(("count", "sample_step"), [(6, 0.05), (3, 0.1), (7, 0.01), (14, 0.025), (3, 0.07)])
 def test_the_end_of_a_run_is_its_last_sample(count: int, sample_step: float) -> None:
     case = Case(PIER, initial=RELEASE, duration=round(count * sample_step, 12))
-    found = multibody.simulate(case, sample_step=sample_step)
-    assert found.time == pytest.approx(sample_step * np.arange(count + 1), abs=1e-12)
-    assert found.tilt[-1] < found.tilt[-2] < found.tilt[0]
+    trace = multibody.simulate(case, sample_step=sample_step)
+    assert trace.time == pytest.approx(sample_step * np.arange(count + 1), abs=1e-12)
+    assert trace.tilt[-1] < trace.tilt[-2] < trace.tilt[0]

@@ -46,22 +46,22 @@ def test_a_base_that_opens_and_closes_at_once_says_nothing(engine: str) -> None:
 
 
 def watch(energy: Any, error: Any, **given: float) -> EnergyWatch:
-    found = EnergyWatch(1e-3, given.get("least", 0.0), given.get("balance", 0.0))
+    watch = EnergyWatch(1e-3, given.get("least", 0.0), given.get("balance", 0.0))
     for part in np.split(np.arange(len(energy)), [300]):
-        found.take(1e-3 * part, np.asarray(energy)[part], np.asarray(error)[part])
-    return found
+        watch.take(1e-3 * part, np.asarray(energy)[part], np.asarray(error)[part])
+    return watch
 
 
 def test_share_and_time_of_a_drift() -> None:
     energy, error = np.full(1000, 2.0), np.zeros(1000)
     error[450:] = -0.003
     error[700] = -0.005
-    found = watch(energy, error)
-    assert found.remark(math.inf) == (pytest.approx(0.4), pytest.approx(-0.0025), DRIFT)
+    drift = watch(energy, error)
+    assert drift.remark(math.inf) == (pytest.approx(0.4), pytest.approx(-0.0025), DRIFT)
     # up to the block of 0.1 s in which it happens
-    assert found.remark(0.65) == (pytest.approx(0.4), pytest.approx(-0.0015), DRIFT)
-    assert math.isnan(found.remark(0.3)[0])
-    assert found.remark(math.inf)[1] == -watch(energy, -error).remark(math.inf)[1]
+    assert drift.remark(0.65) == (pytest.approx(0.4), pytest.approx(-0.0015), DRIFT)
+    assert math.isnan(drift.remark(0.3)[0])
+    assert drift.remark(math.inf)[1] == -watch(energy, -error).remark(math.inf)[1]
     # the same error is a thousandth of a larger motion, and the energy of the balance a bound from below
     assert math.isnan(watch(3.0 * energy, error).remark(math.inf)[0])
     assert math.isnan(watch(-energy, error, balance=6.0).remark(math.inf)[0])

@@ -75,12 +75,12 @@ def three(error: Callable[[float], Any], **more: Any) -> list[Trace]:
 def test_a_series_of_one_term_is_taken_off(order: int) -> None:
     shape = 1e-5 * np.sin(0.1 * np.arange(100))
     runs = three(lambda step: shape * step**order)
-    found = extrapolation(runs, ALPHA)
-    np.testing.assert_allclose(found.tilt, 0.1, atol=1e-15)
-    np.testing.assert_allclose(found.energy, 0.1, atol=1e-15)
-    assert found.peak_tilt == pytest.approx(0.1, abs=1e-15)
-    assert [(fact.code, fact.bound) for fact in found.facts] == [("extrapolated", order)]
-    assert found.settled_until == found.time[-1]
+    limit = extrapolation(runs, ALPHA)
+    np.testing.assert_allclose(limit.tilt, 0.1, atol=1e-15)
+    np.testing.assert_allclose(limit.energy, 0.1, atol=1e-15)
+    assert limit.peak_tilt == pytest.approx(0.1, abs=1e-15)
+    assert [(fact.code, fact.bound) for fact in limit.facts] == [("extrapolated", order)]
+    assert limit.settled_until == limit.time[-1]
 
 
 def test_angles_a_turn_apart_are_one_angle() -> None:
@@ -95,9 +95,9 @@ def test_angles_a_turn_apart_are_one_angle() -> None:
         )
         for run, turn in zip(three(lambda step: shape * step), turns, strict=True)
     ]
-    found = extrapolation(runs, ALPHA)
-    assert found.uplift_direction == pytest.approx(math.pi - 6e-5, abs=1e-12)
-    np.testing.assert_allclose(found.extrema[:, 2], [math.pi - 6e-5, math.pi - 6e-5 + 0.5], atol=1e-12)
+    limit = extrapolation(runs, ALPHA)
+    assert limit.uplift_direction == pytest.approx(math.pi - 6e-5, abs=1e-12)
+    np.testing.assert_allclose(limit.extrema[:, 2], [math.pi - 6e-5, math.pi - 6e-5 + 0.5], atol=1e-12)
     for others in (runs[1].extrema[::-1], runs[1].extrema[:1]):  # others, or fewer, have no common limit
         runs[1] = replace(runs[1], extrema=others)
         np.testing.assert_array_equal(extrapolation(runs, ALPHA).extrema, runs[2].extrema)
@@ -105,11 +105,11 @@ def test_angles_a_turn_apart_are_one_angle() -> None:
 
 def test_the_estimate_is_what_a_halving_moves() -> None:
     shape = 1e-5 * np.sin(0.1 * np.arange(100))
-    found = extrapolation(three(lambda step: shape * (step + 0.05 * step**2)), ALPHA)
-    error = np.abs(found.tilt - 0.1).max()
+    limit = extrapolation(three(lambda step: shape * (step + 0.05 * step**2)), ALPHA)
+    error = np.abs(limit.tilt - 0.1).max()
     assert error > 1e-8
     # the second order that is left is quartered: three of four parts are gone by the last halving
-    assert found.error_estimate == pytest.approx(3.0 * error, rel=1e-6)
+    assert limit.error_estimate == pytest.approx(3.0 * error, rel=1e-6)
 
 
 def test_a_landing_with_every_step_alike_is_no_agreement() -> None:
@@ -117,8 +117,8 @@ def test_a_landing_with_every_step_alike_is_no_agreement() -> None:
     for low, until in ((1.01e-6, 0.99), (0.99e-6, 0.3)):
         runs = three(lambda step: 1e-5 * step * np.sin(0.1 * np.arange(100)))
         points = np.array([[0.1, 0.02, 0.0, -1.0], [0.3, 0.1, 0.0, 1.0], [0.4, low, 0.0, -1.0]])
-        found = extrapolation([replace(run, extrema=points) for run in runs], ALPHA)
-        assert found.settled_until == pytest.approx(until)
+        limit = extrapolation([replace(run, extrema=points) for run in runs], ALPHA)
+        assert limit.settled_until == pytest.approx(until)
 
 
 def left_to_chance(code: str, time: float) -> dict[str, Any]:
@@ -132,15 +132,15 @@ def left_to_chance(code: str, time: float) -> dict[str, Any]:
 def test_beyond_what_is_left_to_chance_it_is_the_finest_run(code: str) -> None:
     runs = three(lambda step: 1e-5 * step * np.sin(0.1 * np.arange(100)))
     runs[-1] = replace(runs[-1], **left_to_chance(code, 0.5))
-    found = extrapolation(runs, ALPHA)
-    assert found.settled_until == pytest.approx(0.5)
-    np.testing.assert_array_equal(found.tilt[51:], runs[-1].tilt[51:])
-    noted = [(fact.code, fact.detail) for fact in found.facts[-2:]]
+    limit = extrapolation(runs, ALPHA)
+    assert limit.settled_until == pytest.approx(0.5)
+    np.testing.assert_array_equal(limit.tilt[51:], runs[-1].tilt[51:])
+    noted = [(fact.code, fact.detail) for fact in limit.facts[-2:]]
     assert noted == [("extrapolated", ""), ("not_extrapolated", code)]
     runs[-1] = replace(runs[-1], **left_to_chance(code, -0.01))
-    found = extrapolation(runs, ALPHA)
-    assert np.isnan(found.error_estimate)
-    assert (found.facts[-1].code, found.facts[-1].detail) == ("not_extrapolated", code)
+    limit = extrapolation(runs, ALPHA)
+    assert np.isnan(limit.error_estimate)
+    assert (limit.facts[-1].code, limit.facts[-1].detail) == ("not_extrapolated", code)
 
 
 def test_beyond_a_divergence_it_is_the_finest_run() -> None:
@@ -151,28 +151,28 @@ def test_beyond_a_divergence_it_is_the_finest_run() -> None:
         return 1e-5 * step * np.sin(0.1 * np.arange(100)) + np.where(late, 0.05 * side[step], 0.0)
 
     runs = three(error, passes=(0.3, 0.55))
-    found = extrapolation(runs, ALPHA)
-    assert found.settled_until == 0.55
-    np.testing.assert_allclose(found.tilt[:56], 0.1, atol=1e-15)
-    np.testing.assert_array_equal(found.tilt[56:], runs[-1].tilt[56:])
-    codes = [(fact.code, fact.detail) for fact in found.facts]
+    limit = extrapolation(runs, ALPHA)
+    assert limit.settled_until == 0.55
+    np.testing.assert_allclose(limit.tilt[:56], 0.1, atol=1e-15)
+    np.testing.assert_array_equal(limit.tilt[56:], runs[-1].tilt[56:])
+    codes = [(fact.code, fact.detail) for fact in limit.facts]
     assert codes == [("extrapolated", ""), ("not_extrapolated", "diverged")]
-    assert found.facts[1].time == 0.55
+    assert limit.facts[1].time == 0.55
 
 
 def test_runs_that_do_not_come_closer_are_not_extrapolated() -> None:
     off = {4.0: 1e-5, 2.0: -1e-5, 1.0: 1e-5}
     runs = three(lambda step: np.full(50, off[step]))
-    found = extrapolation(runs, ALPHA)
-    np.testing.assert_array_equal(found.tilt, runs[-1].tilt)
-    assert [(fact.code, fact.detail) for fact in found.facts] == [("not_extrapolated", "no_closer")]
+    limit = extrapolation(runs, ALPHA)
+    np.testing.assert_array_equal(limit.tilt, runs[-1].tilt)
+    assert [(fact.code, fact.detail) for fact in limit.facts] == [("not_extrapolated", "no_closer")]
 
 
 def test_a_tilt_stays_positive_and_two_sides_of_upright_do_not_mix() -> None:
     runs = three(lambda step: np.where(np.arange(50) == 20, -0.1 + 1e-5 * step**1.2, 1e-5 * step))
-    found = extrapolation(runs, ALPHA)
-    assert (found.tilt >= 0.0).all()
-    assert found.tilt[20] == runs[-1].tilt[20]
+    limit = extrapolation(runs, ALPHA)
+    assert (limit.tilt >= 0.0).all()
+    assert limit.tilt[20] == runs[-1].tilt[20]
     turned = [
         replace(run, rolling_angle=np.full(50, angle))
         for run, angle in zip(three(lambda step: np.full(50, 1e-5 * step)), (0.0, 0.0, 6.0), strict=True)

@@ -40,8 +40,8 @@ def _run(engine: str) -> Trace:
 def ground(time: Any) -> Any:
     """Acceleration at some times, zero outside the record, shape (n, 3)."""
     samples = SHAKING.time_step * np.arange(len(SHAKING.acceleration))
-    found = np.column_stack([np.interp(time, samples, part) for part in SHAKING.acceleration.T])
-    return found * (time <= samples[-1])[:, None]
+    columns = np.column_stack([np.interp(time, samples, part) for part in SHAKING.acceleration.T])
+    return columns * (time <= samples[-1])[:, None]
 
 
 def slope(values: Any) -> Any:
@@ -98,11 +98,11 @@ def test_the_vertical_component_moves_the_uplift(engine: str, solve_forced: Call
     uplifts = []
     for vertical in (-3.0, 0.0, 3.0):
         ramp = GroundMotion([[0.0, 0.0, vertical], [3.0, 0.1, vertical], [6.0, 0.2, vertical]], 0.4)
-        found = multibody.simulate(Case(PIER, ramp), engine=engine)
+        trace = multibody.simulate(Case(PIER, ramp), engine=engine)
         due = 0.8 * (9.81 + vertical) * PIER.tan_alpha / np.hypot(6.0, 0.2)
-        assert found.uplift_time == pytest.approx(due, abs=2e-4 if engine == "mujoco" else 1e-4)
-        assert found.uplift_direction == pytest.approx(np.arctan2(-0.2, -6.0), abs=1e-2)
+        assert trace.uplift_time == pytest.approx(due, abs=2e-4 if engine == "mujoco" else 1e-4)
+        assert trace.uplift_direction == pytest.approx(np.arctan2(-0.2, -6.0), abs=1e-2)
         exact = solve_forced(PIER, ramp, 0.8)
-        assert found.tilt[-1] == pytest.approx(exact.tilt[-1], abs=UPLIFT[engine] * PIER.alpha)
-        uplifts.append(found.uplift_time)
+        assert trace.tilt[-1] == pytest.approx(exact.tilt[-1], abs=UPLIFT[engine] * PIER.alpha)
+        uplifts.append(trace.uplift_time)
     assert uplifts == sorted(uplifts)

@@ -55,15 +55,15 @@ def test_means_of_a_force_that_changes_steadily_are_that_force() -> None:
     record = ForceSamples(samples, STEP)
     for first, last in ((0, 100), (100, 101), (101, 200), (200, 251)):
         record.add(force[:, first:last])
-    found = record.at(samples)
+    forces = record.at(samples)
     at = samples / STEP
     inner = slice(1, 5)
     expected = np.stack([1.0 + 0.01 * at, 2.0 - 0.02 * at, 3.0 + 0.0 * at], axis=1)
-    np.testing.assert_allclose(found[inner], expected[inner], rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(forces[inner], expected[inner], rtol=1e-12, atol=1e-14)
     # at both ends the window is cut: within a third of its half width
     slope = 0.02 * HALF_WINDOW / 3.0
-    np.testing.assert_allclose(found[[0, -1]], expected[[0, -1]], atol=slope)
-    assert (found[[0, -1], 0] != expected[[0, -1], 0]).all()
+    np.testing.assert_allclose(forces[[0, -1]], expected[[0, -1]], atol=slope)
+    assert (forces[[0, -1], 0] != expected[[0, -1], 0]).all()
 
 
 def test_load_is_averaged_over_an_empty_and_a_doubled_step() -> None:

@@ -71,13 +71,13 @@ def test_error_falls_with_the_step(engine: str, solve_free: Callable[..., Any]) 
     steps = np.array([8e-4, 4e-4, 2e-4])
 
     def errors(**settings: float) -> np.ndarray:
-        found = []
+        errors = []
         for step in steps:
             case = Case(squat, initial=initial, duration=2.5)
             run = multibody.simulate(case, engine=engine, time_step=step, **settings)
             exact = solve_free(squat, initial, run.time)
-            found.append(np.abs(run.tilt - exact.tilt).max() / squat.alpha)
-        return np.array(found)
+            errors.append(np.abs(run.tilt - exact.tilt).max() / squat.alpha)
+        return np.array(errors)
 
     # friction that only stops the slip lets the rim creep, which is first order; budget of the slope 0.2
     stopping = errors(friction_damping=1.0)

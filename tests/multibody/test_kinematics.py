@@ -55,26 +55,26 @@ def test_a_state_comes_back(seed: int) -> None:
         rolling_rate=random.normal(),
     )
     start = starting_state(BODY, state, 1.0)
-    found, place = at(start), rim_at(start)
+    pose, place = at(start), rim_at(start)
     # accurate to rounding at every tilt; an arccosine would lose everything below 1e-8
-    assert found.tilt[0] == pytest.approx(state.tilt, rel=1e-12)
-    assert found.tilt_rate[0] == pytest.approx(state.tilt_rate, rel=1e-12)
-    assert found.azimuth[0] == pytest.approx(state.rolling_angle, rel=1e-9)
+    assert pose.tilt[0] == pytest.approx(state.tilt, rel=1e-12)
+    assert pose.tilt_rate[0] == pytest.approx(state.tilt_rate, rel=1e-12)
+    assert pose.azimuth[0] == pytest.approx(state.rolling_angle, rel=1e-9)
     # the rate is a difference of the order of tilt^2 rolling_rate: rounding over the tilt squared
     assert place.rolling_rate[0] == pytest.approx(state.rolling_rate, rel=1e-9 + 1e-15 / state.tilt**2)
-    assert found.twist[0] == 0.0
+    assert pose.twist[0] == 0.0
     # the lowest point is on the original circle, on the ground, and does not slip
     b = CYLINDER.base_radius
     expected = b * np.array([math.cos(state.rolling_angle), math.sin(state.rolling_angle)])
     np.testing.assert_allclose(place.contact_point[0], expected, atol=1e-15 / state.tilt + 1e-14)
-    assert found.depth[0] == pytest.approx(0.0, abs=1e-14)
-    assert found.slip_rate[0] == pytest.approx(0.0, abs=1e-13)
+    assert pose.depth[0] == pytest.approx(0.0, abs=1e-14)
+    assert pose.slip_rate[0] == pytest.approx(0.0, abs=1e-13)
 
 
 def test_energy_and_momentum_are_those_of_the_equations() -> None:
     state = InitialState(tilt=0.3, tilt_rate=0.7, rolling_angle=1.1, rolling_rate=-0.9)
     start = starting_state(BODY, state, 1.0)
-    found = at(start)
+    pose = at(start)
     b, h, theta = CYLINDER.base_radius, CYLINDER.mass_centre_height, state.tilt
     I1, I2 = (3 * b * b + 4 * h * h) / 12, b * b / 2
     t = math.tan(theta / 2)
@@ -82,7 +82,7 @@ def test_energy_and_momentum_are_those_of_the_equations() -> None:
     A = I1 + h * h + b * b
     potential = 9.81 * (b * math.sin(theta) + h * (math.cos(theta) - 1.0))
     energy = 0.5 * A * state.tilt_rate**2 + 0.5 * B * state.rolling_rate**2 + potential
-    assert found.energy[0] == pytest.approx(energy, rel=1e-12)
+    assert pose.energy[0] == pytest.approx(energy, rel=1e-12)
     assert momentum_at(start) == pytest.approx(B * state.rolling_rate, rel=1e-12)
 
 
@@ -122,8 +122,8 @@ def test_a_small_step_back_is_not_a_whole_turn() -> None:
 def test_the_angle_waits_while_the_cylinder_stands() -> None:
     azimuth = np.array([0.5, 2.0, -2.9, 1.0, -1.0, 0.7])
     leans = np.array([True, False, False, False, True, True])
-    found = unwrap(azimuth, _forward, leans, 0.4, True)
-    np.testing.assert_allclose(found, [0.5, 0.5, 0.5, 0.5, -1.0, 0.7])
+    angle = unwrap(azimuth, _forward, leans, 0.4, True)
+    np.testing.assert_allclose(angle, [0.5, 0.5, 0.5, 0.5, -1.0, 0.7])
 
 
 @pytest.mark.parametrize("edge", [1, 3, 4, 5])
@@ -147,5 +147,5 @@ def test_drake_cylinder_recovers_its_rotation_about_the_axis() -> None:
     turned = Rotation.from_rotvec([[0.3, -0.2, 0.5], [1.0, 0.4, -0.7]])
     angle = np.array([0.8, -2.5])
     expected = turned * Rotation.from_rotvec(angle[:, None] * [0.0, 0.0, 1.0])
-    found = _spin(turned.as_quat(scalar_first=True), angle)
-    assert found == pytest.approx(expected.as_quat(scalar_first=True), abs=1e-14)
+    turn = _spin(turned.as_quat(scalar_first=True), angle)
+    assert turn == pytest.approx(expected.as_quat(scalar_first=True), abs=1e-14)

@@ -57,9 +57,9 @@ def test_a_pass_lies_between_two_maxima_that_are_more_than_rounding() -> None:
         (3.0, 0.11, 3.7, True),
         (4.0, 0.03, 5.0, False),
     )
-    (found,) = passes_between(points, 1e-9).itertuples()
-    assert (found.time, found.minimum_tilt) == (2.2, 0.02 - 1e-12)
-    assert found.angle_of_turn == pytest.approx(3.0)
+    (row,) = passes_between(points, 1e-9).itertuples()
+    assert (row.time, row.minimum_tilt) == (2.2, 0.02 - 1e-12)
+    assert row.angle_of_turn == pytest.approx(3.0)
 
 
 @pytest.mark.parametrize("chunks", [[], [1], [150, 1, 60], [7] * 60])
@@ -103,7 +103,7 @@ def test_a_pass_belongs_to_one_motion() -> None:
         (7.0, 0.01, 7.0, False),
         (8.0, 0.04, 8.5, True),
     )
-    joined = [(found.time, found.angle_of_turn) for found in passes_between(points, 1e-9).itertuples()]
+    joined = [(row.time, row.angle_of_turn) for row in passes_between(points, 1e-9).itertuples()]
     assert 4.7 in [time for time, _ in joined]
     diverged = passes_between(points, 1e-9, [(4.0, 5.0)])
     assert diverged.time.tolist() == [2.0, 7.0]

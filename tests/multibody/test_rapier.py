@@ -19,8 +19,8 @@ RELEASE = Case(COLUMN, initial=InitialState(COLUMN.alpha / 2, rolling_rate=0.5),
 
 def error(support: str, time_step: float) -> float:
     """Largest difference of the tilt from the reduced model, over alpha."""
-    found = multibody.simulate(RELEASE, engine="rapier", support=support, time_step=time_step)
-    return float(np.abs(found.tilt - reduced.simulate(RELEASE, support=support).tilt).max()) / COLUMN.alpha
+    trace = multibody.simulate(RELEASE, engine="rapier", support=support, time_step=time_step)
+    return float(np.abs(trace.tilt - reduced.simulate(RELEASE, support=support).tilt).max()) / COLUMN.alpha
 
 
 @pytest.mark.slow

@@ -79,9 +79,9 @@ def test_twist_goes_on_over_whole_turns_and_signs_of_the_quaternion(chunks: list
     ones = np.ones((count, 1))
     steps = Steps(leaning.position * ones, quaternion, 0.0 * ones * leaning.position, spin * ones)
     samples = 0.01 * np.arange(31)
-    found = record(scene_of(PIER, start=start), steps, np.zeros((count, 3)), samples, chunks)
-    assert not found.ended, found.failure
-    twist = found.table[:, 1 + COLUMNS.index("twist")]
+    motion = record(scene_of(PIER, start=start), steps, np.zeros((count, 3)), samples, chunks)
+    assert not motion.ended, motion.failure
+    twist = motion.table[:, 1 + COLUMNS.index("twist")]
     np.testing.assert_allclose(twist, rate * samples, atol=1e-9)
     assert abs(twist[-1]) > 3.0 * np.pi
 
@@ -124,15 +124,15 @@ def test_motion_after_overturning_is_not_recorded() -> None:
     position[over + 2 :] += np.linspace([0.0, 0.0, 0.0], [3.0, 0.0, 5.0], len(position) - over - 2)
     velocity[over + 2 :] += [50.0, 0.0, 80.0]
     thrown = Steps(position, steps.quaternion, velocity, steps.angular_velocity)
-    found = record(scene, thrown, acceleration, samples, [])
-    assert (found.ended, found.end_time) == (alone.ended, alone.end_time) == ("overturned", found.end_time)
-    np.testing.assert_array_equal(found.table, alone.table)
-    np.testing.assert_array_equal(found.last_row, alone.last_row)
+    motion = record(scene, thrown, acceleration, samples, [])
+    assert (motion.ended, motion.end_time) == (alone.ended, alone.end_time) == ("overturned", motion.end_time)
+    np.testing.assert_array_equal(motion.table, alone.table)
+    np.testing.assert_array_equal(motion.last_row, alone.last_row)
     np.testing.assert_array_equal(
-        [found.slip_time, found.flight_time, found.fastest],
+        [motion.slip_time, motion.flight_time, motion.fastest],
         [alone.slip_time, alone.flight_time, alone.fastest],
     )
-    assert found.energy.remark(np.inf) == alone.energy.remark(np.inf)
+    assert motion.energy.remark(np.inf) == alone.energy.remark(np.inf)
 
 
 def test_samples_between_steps_lie_on_the_straight_line_between_them() -> None:
@@ -140,8 +140,8 @@ def test_samples_between_steps_lie_on_the_straight_line_between_them() -> None:
     every = record(scene, steps, acceleration, STEP * np.arange(2001), []).table
     samples = 0.00137 * np.arange(1, 140)
     # the first two chunks end just before a sample, which lies between them
-    found = record(scene, steps, acceleration, samples, [14, 14, 333]).table
-    np.testing.assert_array_equal(found[:, 0], samples)
+    table = record(scene, steps, acceleration, samples, [14, 14, 333]).table
+    np.testing.assert_array_equal(table[:, 0], samples)
     for column in range(1, 1 + len(COLUMNS)):
         line = np.interp(samples, every[:, 0], every[:, column])
-        np.testing.assert_allclose(found[:, column], line, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(table[:, column], line, rtol=1e-9, atol=1e-12)

@@ -132,9 +132,9 @@ def _wall_contacts(
     ring = RingSettings(ring_clearance=clearance, ring_inclination=inclination, ring_facets=8)
     model = compile_scene(scene, MujocoSettings.resolve({}, 1e-4), standing=False, ring=ring)
     data = mujoco.MjData(model)
-    found = []
+    contacts = []
     for start in starts:
         data.qpos[:3], data.qpos[3:] = start.position, start.quaternion
         mujoco.mj_forward(model, data)
-        found.append(data.sensordata[0])
-    return np.array(found)
+        contacts.append(data.sensordata[0])
+    return np.array(contacts)

@@ -160,5 +160,5 @@ def test_the_acceleration_of_the_rim_is_that_of_its_lowest_point() -> None:
 
     step = 1e-4
     expected = (height(step) - 2.0 * height(0.0) + height(-step)) / step**2
-    found = _rim_acceleration(SimpleNamespace(qacc=acceleration), scene)
-    assert found == pytest.approx(expected, abs=1e-6)  # of second differences, of their step and rounding
+    of_rim = _rim_acceleration(SimpleNamespace(qacc=acceleration), scene)
+    assert of_rim == pytest.approx(expected, abs=1e-6)  # of second differences, of their step and rounding

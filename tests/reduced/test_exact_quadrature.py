@@ -164,9 +164,9 @@ def test_a_release_is_that_of_the_printed_energies(
     cylinder: Cylinder, initial: InitialState, gravity: float
 ) -> None:
     expected = quadrature(cylinder, initial, gravity)
-    found = free_response(cylinder, initial, gravity=gravity)
+    response = free_response(cylinder, initial, gravity=gravity)
     errors = {
-        name: abs(float(getattr(found, name) / value - 1)) for name, value in expected._asdict().items()
+        name: abs(float(getattr(response, name) / value - 1)) for name, value in expected._asdict().items()
     }
     assert max(errors.values()) < AGREEMENT, errors
-    assert found.half_period == 0.5 * found.period
+    assert response.half_period == 0.5 * response.period

@@ -87,5 +87,5 @@ def test_peaks_of_el_centro_cut_in_the_middle_of_a_swing(
 ) -> None:
     # printed with three digits, of an integration over still ground by another code
     cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
-    found = reduced.simulate(Case(cylinder, el_centro_1940().scaled(scale), duration=end))
-    assert found.peak_tilt / cylinder.alpha == pytest.approx(peak, abs=6e-4 * peak + 5e-5)
+    trace = reduced.simulate(Case(cylinder, el_centro_1940().scaled(scale), duration=end))
+    assert trace.peak_tilt / cylinder.alpha == pytest.approx(peak, abs=6e-4 * peak + 5e-5)

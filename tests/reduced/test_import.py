@@ -25,8 +25,8 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 def test_scipy_is_loaded_by_what_uses_it():
     # every worker process imports this package, and few ask for an exact solution: 0.7 s of 1.6 s
     script = "import sys, rockwobble.reduced; print(*{'scipy.optimize', 'scipy.special'} & set(sys.modules))"
-    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert found.stdout == "\n"
+    process = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert process.stdout == "\n"
 
 
 # as where the installation belongs to somebody else and HOME cannot be written

@@ -140,8 +140,8 @@ def polar(force: Vector, phi: float) -> Vector:
     return vector(force[0] * c + force[1] * s, force[1] * c - force[0] * s, force[2])
 
 
-def assert_close(found: Sequence[float], expected: Sequence[Any], scale: Sequence[Any]) -> None:
-    errors = [float(abs(f - e) / s) for f, e, s in zip(found, expected, scale, strict=True)]
+def assert_close(values: Sequence[float], expected: Sequence[Any], scale: Sequence[Any]) -> None:
+    errors = [float(abs(f - e) / s) for f, e, s in zip(values, expected, scale, strict=True)]
     assert max(errors) < AGREEMENT, errors
 
 
@@ -208,8 +208,8 @@ def test_accelerations_and_forces_of_a_random_state(seed: int, recess: bool, sha
             expected += [tau_rate, S_rate]
             sizes += [abs(tau_rate), scale.moment]
             B, G, _ = quadratic_form(given.column, given.slab.share, state.theta)
-            found = rolling_momentum(body, given.theta, given.Lambda, given.S)
-            assert_close([found], [B * state.phi_rate], [abs(given.Lambda) + abs(G * tau_rate)])
+            momenta = rolling_momentum(body, given.theta, given.Lambda, given.S)
+            assert_close([momenta], [B * state.phi_rate], [abs(given.Lambda) + abs(G * tau_rate)])
         assert_close(rates[: len(expected)], expected, sizes)
         if share:
             rolling = mp.sqrt(state.theta_rate**2 + (mp.sin(state.theta) * state.psi_rate) ** 2)
@@ -235,8 +235,8 @@ def test_planar(seed: int) -> None:
                 mp.mpf(0),
             )
             motion = newton_euler(given.column, state, vector(along, 0, vertical), True, given.slab)
-            found = planar_rhs(given.body, given.theta, direction, along, vertical)
-            assert_close((found,), (motion.theta,), (scales_of(given, state).theta,))
+            rates = planar_rhs(given.body, given.theta, direction, along, vertical)
+            assert_close((rates,), (motion.theta,), (scales_of(given, state).theta,))
 
 
 @pytest.mark.parametrize("seed", range(220, 230))
@@ -248,8 +248,8 @@ def test_energy(seed: int) -> None:
         share = given.slab.share
         kinetic = kinetic_energy(given.column, state, share) / (1 + 2 * share)
         potential = body.g * (body.b * mp.sin(state.theta) - body.h * (1 - mp.cos(state.theta)))
-        found = energy(body, given.theta, given.omega, given.Lambda, given.S)
-        assert_close((found,), (kinetic + potential,), (kinetic + body.g * (body.b + body.h) * state.theta,))
+        total = energy(body, given.theta, given.omega, given.Lambda, given.S)
+        assert_close((total,), (kinetic + potential,), (kinetic + body.g * (body.b + body.h) * state.theta,))
 
 
 @pytest.mark.parametrize("free_twist", [False, True])
@@ -257,20 +257,20 @@ def test_energy(seed: int) -> None:
 def test_force_in_world_axes_over_the_weight(seed: int, free_twist: bool) -> None:
     given = sample(seed, twisting=free_twist)
     states = np.array([[given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S], np.zeros(6)])
-    found = derived_quantities(given.body, states, np.array([given.ground, given.ground]), free_twist)
+    quantities = derived_quantities(given.body, states, np.array([given.ground, given.ground]), free_twist)
     with mp.workdps(DIGITS):
         state = state_of(given)
         motion = newton_euler(given.column, state, vector(*given.ground), not free_twist, given.slab)
         weight, scale = given.body.g * carried(given), scales_of(given, state)
         assert_close(
-            tuple(found[0, 2:]),
+            tuple(quantities[0, 2:]),
             tuple(component / weight for component in (*motion.force, motion.moment)),
             tuple(size / weight for size in (scale.force, scale.force, scale.force, scale.moment)),
         )
-        assert_close((found[0, 0],), (state.phi_rate,), (abs(state.phi_rate),))
+        assert_close((quantities[0, 0],), (state.phi_rate,), (abs(state.phi_rate),))
         # a body that stands goes with the ground
         standing = vector(*given.ground) / mp.mpf(given.body.g) + vector(0, 0, 1)
-        assert_close(tuple(found[1]), (0, 0, *standing, 0), (1,) * 6)
+        assert_close(tuple(quantities[1]), (0, 0, *standing, 0), (1,) * 6)
 
 
 @pytest.mark.parametrize("seed", range(401, 411, 2))
@@ -279,12 +279,12 @@ def test_force_on_the_slab(seed: int) -> None:
     states = np.array([[given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S]])
     ground = np.array([given.ground])
     base = derived_quantities(given.body, states, ground, True)[:, 2:5]
-    found = top_force(given.body, base, ground, states, float(given.slab.share))
+    force = top_force(given.body, base, ground, states, float(given.slab.share))
     with mp.workdps(DIGITS):
         state = state_of(given)
         motion = newton_euler(given.column, state, vector(*given.ground), False, given.slab)
         scale = scales_of(given, state).force / given.body.g
-        assert_close(tuple(found[0]), tuple(motion.top / given.slab.share / given.body.g), (scale,) * 3)
+        assert_close(tuple(force[0]), tuple(motion.top / given.slab.share / given.body.g), (scale,) * 3)
 
 
 def test_a_free_slab_turns_the_less_the_wider_the_columns_stand() -> None:
@@ -314,12 +314,12 @@ def test_the_moment_about_the_vertical_is_1_plus_cos_theta_times_kappa(support: 
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.4, transverse_inertia=9.0, axial_inertia=2.0)
     case = Case(cylinder, initial=InitialState(0.5 * cylinder.alpha, rolling_rate=1.2), duration=1.0)
     step = 1e-3
-    found = reduced.simulate(case, support=support, sample_step=step, rtol=1e-12)
-    s, c = np.sin(found.tilt), np.cos(found.tilt)
-    about_axis = np.gradient(found.twist, step, edge_order=2) - (1.0 - c) * found.rolling_rate
-    momentum = 9.0 * s**2 * found.rolling_rate + 2.0 * c * about_axis
-    arm, force = found.contact_point - found.centre_of_mass[:, :2], 9.81 * found.contact_force
+    trace = reduced.simulate(case, support=support, sample_step=step, rtol=1e-12)
+    s, c = np.sin(trace.tilt), np.cos(trace.tilt)
+    about_axis = np.gradient(trace.twist, step, edge_order=2) - (1.0 - c) * trace.rolling_rate
+    momentum = 9.0 * s**2 * trace.rolling_rate + 2.0 * c * about_axis
+    arm, force = trace.contact_point - trace.centre_of_mass[:, :2], 9.81 * trace.contact_force
     moment = np.gradient(momentum, step) - (arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0])
-    stated = (1.0 + c) * 9.81 * found.restraining_moment
+    stated = (1.0 + c) * 9.81 * trace.restraining_moment
     assert np.abs(stated).max() > 1e-3 if support == "recess" else (stated == 0.0).all()
     np.testing.assert_allclose(moment[2:-2], stated[2:-2], rtol=0.0, atol=2e-9)

@@ -54,15 +54,15 @@ def test_a_release_without_spin_at_any_azimuth(options: dict[str, Any], lean: fl
     assert math.remainder(first.rolling_angle[0] - lean, math.tau) == pytest.approx(0.0, abs=ROUNDING)
     assert len(first.passes) > 0
     for azimuth in EVERY_WAY:
-        found = released(float(azimuth))
-        np.testing.assert_allclose(found.tilt, first.tilt, atol=ROUNDING)
-        off = np.exp(1j * (found.rolling_angle - azimuth)) - np.exp(1j * first.rolling_angle)
+        trace = released(float(azimuth))
+        np.testing.assert_allclose(trace.tilt, first.tilt, atol=ROUNDING)
+        off = np.exp(1j * (trace.rolling_angle - azimuth)) - np.exp(1j * first.rolling_angle)
         np.testing.assert_allclose(np.abs(off), 0.0, atol=ROUNDING)
-        assert np.abs(np.diff(found.rolling_angle)).max() < math.pi + ROUNDING
+        assert np.abs(np.diff(trace.rolling_angle)).max() < math.pi + ROUNDING
         for name in ("contact_point", "centre_of_mass", "contact_force"):
             expected = turned(getattr(first, name)[:, :2], azimuth)
-            np.testing.assert_allclose(getattr(found, name)[:, :2], expected, atol=1e-8)
-        off = math.remainder(found.uplift_direction - azimuth - lean, math.tau)
+            np.testing.assert_allclose(getattr(trace, name)[:, :2], expected, atol=1e-8)
+        off = math.remainder(trace.uplift_direction - azimuth - lean, math.tau)
         assert off == pytest.approx(0.0, abs=ROUNDING)
 
 

@@ -104,8 +104,8 @@ def test_decaying_swings_match_momentum_and_quadrature():
     """Each rises to r^2 of the height before; each half takes the exact quarter period of its tilt."""
     ratio = (16.0 - 25.0 * math.sin(PIER.alpha) ** 2) / (16.0 - math.sin(PIER.alpha) ** 2)
     case = Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=16.0)
-    found = reduced.simulate(case, plane=0.0, rtol=1e-12, rest_tilt=0.0, restitution="momentum")
-    tops = found.extrema[found.extrema[:, 3] > 0.0]
+    trace = reduced.simulate(case, plane=0.0, rtol=1e-12, rest_tilt=0.0, restitution="momentum")
+    tops = trace.extrema[trace.extrema[:, 3] > 0.0]
     assert len(tops) > 8
     b, h = PIER.base_radius, PIER.mass_centre_height
     heights = b * np.sin(tops[:, 1]) - 2.0 * h * np.sin(0.5 * tops[:, 1]) ** 2

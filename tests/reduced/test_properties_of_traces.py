@@ -123,13 +123,13 @@ def test_demands_are_the_extrema_of_dense_samples(seed):
     dense = given.simulate(duration=duration, sample_step=DENSE, friction=needed)
     moving = dense.open_base
     normal, friction = dense.contact_force[moving, 2], dense.friction_needed[moving]
-    found = dense.assumptions
+    demands = dense.assumptions
     least = 1e-9
-    assert found.least_normal_force <= normal.min() + least
-    assert found.largest_normal_force >= normal.max() - least
-    assert found.largest_restraining_moment >= np.abs(dense.restraining_moment[moving]).max() - least
-    assert found.largest_friction_needed >= (1.0 - 1e-9) * friction.max()
-    breaches = {breach.code: breach for breach in found.breaches}
+    assert demands.least_normal_force <= normal.min() + least
+    assert demands.largest_normal_force >= normal.max() - least
+    assert demands.largest_restraining_moment >= np.abs(dense.restraining_moment[moving]).max() - least
+    assert demands.largest_friction_needed >= (1.0 - 1e-9) * friction.max()
+    breaches = {breach.code: breach for breach in demands.breaches}
     for name, broken in (
         ("tension", normal <= 0.0),
         ("friction_needed", (normal > 0.0) & (friction > needed)),

@@ -127,11 +127,11 @@ def on_symbols(function: Any) -> Callable[..., Any]:
     run = types.FunctionType(original.__code__, names, argdefs=original.__defaults__)
 
     def exactly(*arguments: Any) -> Any:
-        found = run(*arguments)
-        if not isinstance(found, tuple):
-            return rational(found)
-        exact = map(rational, found)
-        return Body._make(exact) if isinstance(found, Body) else tuple(exact)
+        value = run(*arguments)
+        if not isinstance(value, tuple):
+            return rational(value)
+        exact = map(rational, value)
+        return Body._make(exact) if isinstance(value, Body) else tuple(exact)
 
     return exactly
 
@@ -186,8 +186,8 @@ def recess_residuals(body: Body, motion: tuple[Any, Any]) -> list[Any]:
     x = QUARTER[tilt]
     inertia_rate = inertia.diff(x) * (1 + x**2) / 4 * omega
     phi_acceleration = (L_rate - inertia_rate * rate) / inertia
-    found = {theta_2: tilt_acceleration.subs(L, inertia * rate), phi_2: phi_acceleration}
-    return [equation.xreplace(found) for equation in motion]
+    accelerations = {theta_2: tilt_acceleration.subs(L, inertia * rate), phi_2: phi_acceleration}
+    return [equation.xreplace(accelerations) for equation in motion]
 
 
 @pytest.mark.slow
@@ -242,9 +242,9 @@ def test_energy_is_that_of_the_paper(paper: tuple[Any, Any], share: Any) -> None
     kinetic, potential = (plain(part) for part in paper)
     body = constants(I1, I2, share)
     phi_rate = on_symbols(equations.recess_rhs)(body, *STATE)[2]
-    found = on_symbols(equations.energy)(body, tilt, omega, L, 0.0)
+    total = on_symbols(equations.energy)(body, tilt, omega, L, 0.0)
     assert vanishes(
-        (kinetic + potential - potential.subs(tilt, 0)).subs(rate, phi_rate) - (1 + 2 * share) * found
+        (kinetic + potential - potential.subs(tilt, 0)).subs(rate, phi_rate) - (1 + 2 * share) * total
     )
 
 

@@ -31,22 +31,22 @@ def rough(seed: int, time_step: float) -> Case:
 def test_listed_turning_points_are_those_of_the_samples(model: str, time_step: float) -> None:
     turned = 0
     for seed in range(PROBLEMS):
-        found = reduced.simulate(rough(seed, time_step), sample_step=SAMPLE, **OPTIONS[model])
-        if found.outcome == "overturned":
+        trace = reduced.simulate(rough(seed, time_step), sample_step=SAMPLE, **OPTIONS[model])
+        if trace.outcome == "overturned":
             continue
-        assert found.peak_tilt >= found.tilt.max(), seed
-        moving = np.isfinite(found.rolling_angle)
-        rising = np.diff(found.tilt) > 0.0
+        assert trace.peak_tilt >= trace.tilt.max(), seed
+        moving = np.isfinite(trace.rolling_angle)
+        rising = np.diff(trace.tilt) > 0.0
         turns = 1 + np.flatnonzero(rising[1:] != rising[:-1])
         turns = turns[moving[turns - 1] & moving[turns] & moving[turns + 1]]
-        times, tilts, _, _ = found.extrema.T
+        times, tilts, _, _ = trace.extrema.T
         for turn in turns:
-            assert np.abs(times - found.time[turn]).min() < 2.0 * SAMPLE, (seed, found.time[turn])
+            assert np.abs(times - trace.time[turn]).min() < 2.0 * SAMPLE, (seed, trace.time[turn])
         turned += len(turns)
-        result, _ = found.source.problem.solve(times)
+        result, _ = trace.source.problem.solve(times)
         turning = tilts > 0.0  # where the base lands in a plane it has a speed
         rates = np.abs(result.samples[turning, 1])
-        assert rates.max() < STILL * np.abs(found.tilt_rate).max(), (seed, times[turning][rates.argmax()])
+        assert rates.max() < STILL * np.abs(trace.tilt_rate).max(), (seed, times[turning][rates.argmax()])
     assert turned > 5 * PROBLEMS
 
 
@@ -58,9 +58,9 @@ def test_landing_and_rise_within_one_step_are_detected() -> None:
     motion = el_centro_1940().scaled(scale)
     push = motion.acceleration @ [math.cos(0.3), math.sin(0.3)]
     along = GroundMotion(np.column_stack([push, 0.0 * push]), motion.time_step)
-    found = reduced.simulate(Case(Cylinder(semidiagonal=2.0, tan_alpha=0.1), along))
-    assert found.outcome == "stands"
-    assert cell == pytest.approx(found.peak_tilt, rel=1e-6)
+    trace = reduced.simulate(Case(Cylinder(semidiagonal=2.0, tan_alpha=0.1), along))
+    assert trace.outcome == "stands"
+    assert cell == pytest.approx(trace.peak_tilt, rel=1e-6)
 
 
 @pytest.mark.parametrize("rolling_rate", [1e-40, 1e-20, 1e-14])
@@ -70,7 +70,7 @@ def test_a_hop_in_one_step_does_not_end_below_upright(rolling_rate: float) -> No
     release = InitialState(tilt=1.516939e-3, tilt_rate=-5.659764e-2, rolling_rate=rolling_rate)
     cylinder = Cylinder(semidiagonal=7.566023, tan_alpha=0.2598229)
     motion = GroundMotion(np.column_stack([x, 0.0 * x]), 0.1)
-    found = reduced.simulate(Case(cylinder, motion, initial=release, duration=0.2))
-    assert found.outcome == "stands"
-    assert found.tilt.min() > 0.0
-    assert found.passes["angle_of_turn"].tolist() == pytest.approx([3.2647283], abs=1e-6)
+    trace = reduced.simulate(Case(cylinder, motion, initial=release, duration=0.2))
+    assert trace.outcome == "stands"
+    assert trace.tilt.min() > 0.0
+    assert trace.passes["angle_of_turn"].tolist() == pytest.approx([3.2647283], abs=1e-6)

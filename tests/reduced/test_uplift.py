@@ -162,9 +162,9 @@ def test_sine_and_cosine_are_those_of_the_library():
     from rockwobble.reduced.trigonometry import sin_cos
 
     x = np.concatenate([np.linspace(-50.0, 50.0, 4001), 10.0 ** np.linspace(-300.0, 8.0, 2000)])
-    found = np.array([sin_cos(value) for value in x])
+    pairs = np.array([sin_cos(value) for value in x])
     # one unit in the last place of the larger of the two
-    assert np.abs(found[:, 0] - np.sin(x)).max() <= 2.3e-16
-    assert np.abs(found[:, 1] - np.cos(x)).max() <= 2.3e-16
+    assert np.abs(pairs[:, 0] - np.sin(x)).max() <= 2.3e-16
+    assert np.abs(pairs[:, 1] - np.cos(x)).max() <= 2.3e-16
     small = x[np.abs(x) < 0.7]
     assert np.array([sin_cos(v)[0] for v in small]) == pytest.approx(np.sin(small), rel=4e-16)
