@@ -23,6 +23,7 @@ from .argument_kinds import with_argument_kinds
 from .diagnostic import Diagnostic
 from .number_checks import quoted, require_increasing, require_numbers, require_one_of, require_positive
 from .record_source import METRES_PER_SECOND_SQUARED, UNITS
+from .records.component import bytes_of
 from .records.units import unit_of
 from .shown import CompactRepr
 
@@ -243,7 +244,7 @@ def read_hazard(
     if years is not None:
         require_positive("hazard years", years, "years")
     try:
-        text = place.read_text(encoding="utf-8-sig")
+        text = bytes_of(place).decode("utf-8-sig")
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is no text in UTF-8"
         raise ValueError(f"cannot read the hazard curve {place}: {reason}") from None

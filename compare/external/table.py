@@ -166,6 +166,8 @@ def read_tables(path: Path, angle_unit: str | None = None, columns: Sequence[str
     """
     if angle_unit not in (None, *ANGLE_UNITS):
         raise ValueError(f"the unit of angles must be one of {', '.join(ANGLE_UNITS)}, got {angle_unit!r}")
+    if path.is_char_device() or path.is_fifo():  # which may never end
+        raise ValueError(f"cannot read the trajectory {path}: it is no file")
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, ValueError) as error:

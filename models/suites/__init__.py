@@ -61,6 +61,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..argument_kinds import with_argument_kinds
+from ..records.component import bytes_of
 
 if TYPE_CHECKING:
     from ..case import Suite
@@ -124,7 +125,7 @@ def _read(path: Path) -> Suite:
     from .tables import SuiteTable, first_line
 
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(bytes_of(path).decode())
     except OSError as error:
         raise ValueError(
             f"cannot read the suite {path}: {error.strerror or error}; "

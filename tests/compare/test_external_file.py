@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from external_files import ANGLES, PLACE, TURN, columns
 from rockwobble import reduced
 from rockwobble.compare import External, read_trajectory
 from rockwobble.compare.external.mistakes import Mistake
+from rockwobble.compare.external.table import read_tables
 from rockwobble.compare.external.trajectory import measurement
 from rockwobble.models import Case, Cylinder, InitialState
 
@@ -253,3 +255,8 @@ def test_columns_that_are_not_read_are_named_whole(tmp_path):
     path.write_text("time [s]," + ",".join(more) + "\n0" + ",0" * len(more))
     with pytest.raises(ValueError, match=r", got time \[s\], gauge_0, .*, gauge_\d+ and \d+ more;"):
         read_trajectory(path, RELEASE)
+
+
+def test_a_device_is_no_trajectory() -> None:
+    with pytest.raises(ValueError, match="it is no file"):
+        read_tables(Path("/dev/zero"))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import socket
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from rockwobble.models import read_record, read_records
+from rockwobble.models import read_hazard, read_record, read_records, read_suite
 
 PATHS = {
     "circle": "Too many levels of symbolic links",
@@ -76,3 +77,9 @@ def test_a_path_that_is_no_record_or_table_is_refused(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(Path, "read_bytes", refuse)
     assert message_of("blank.csv") == "cannot read the record blank.csv: Permission denied"
+
+
+def test_a_device_is_no_hazard_curve_and_no_suite() -> None:
+    for read in (partial(read_hazard, measure="pga"), read_suite):
+        with pytest.raises(ValueError, match=r"zero.* no (file|text)"):
+            read("/dev/zero")
