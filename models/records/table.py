@@ -139,8 +139,9 @@ def _form(text: str) -> tuple[str | None, bool]:
 def _blank_separated(file: RecordFile, places: Sequence[int], rows: Sequence[str]) -> str:
     text = re.sub(r"[,;\t ]+$", "", "\n".join(rows).replace('"', ""), flags=re.MULTILINE)
     separator, comma = _form(text.split("\n", 1)[0])
-    if not comma and len(rows) > 1:  # the first may hold whole numbers only
-        separator, comma = _form(text.split("\n", 2)[1])
+    second = _form(text.split("\n", 2)[1]) if len(rows) > 1 else (None, False)
+    if second[1]:  # the first may hold whole numbers only
+        separator, comma = second
     empty = _EMPTY_CELL.search(text) if separator else None
     if empty:
         at = text.count("\n", 0, empty.start())
@@ -159,9 +160,10 @@ def _damage(file: RecordFile, places: Sequence[int], rows: Sequence[str], width:
         if widths_of(row) != width or plain_numbers(row) is None
     )
     at = next(damaged)
+    model = f", as in line {places[0] + 1}" * (at != places[0])
     return (
         f"{file.name}, line {at + 1}: expected {width} finite number{'s' * (width > 1)}, blanks or "
-        f"separators between, as in line {places[0] + 1}, got {file.text[at].strip()[:60]!r}"
+        f"separators between{model}, got {file.text[at].strip()[:60]!r}"
     )
 
 

@@ -209,6 +209,15 @@ def test_bad_text_records_are_refused_in_one_line(tmp_path: Path, name: str) -> 
     assert len(message) < 300
 
 
+@pytest.mark.parametrize("row", [2, 3, 4, 30, COUNT])
+@pytest.mark.parametrize("cut", ["0.5", "0.5,x", "0.5,1,2,3"])
+def test_the_line_of_a_damaged_row_is_named(write: Write, row: int, cut: str) -> None:
+    whole = table(GAL, EAST, NORTH).splitlines()
+    whole[row] = cut
+    with pytest.raises(ValueError, match=f"line {row + 1}: expected|rows that begin in line {row + 2}"):
+        read_record(write("\n".join(whole)))
+
+
 # the same motion under names of many languages, in any order and separator: x is east, y north, z up
 NAMES = {
     "Time (s);U-D (gal);N-S (gal);E-W (gal)": "zyx",

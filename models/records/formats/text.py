@@ -147,8 +147,8 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
     else:
         if len(rows) < 2 or rows.size < len(table.values):
             raise ValueError(
-                f"{file.name}, line {table.lines[-1]}: expected at least two rows of {width} numbers; "
-                f"{COLUMNS_OPTION} values takes all as one component, row by row"
+                f"{file.name}, line {table.lines[-1]}: expected {width} numbers in every row, "
+                f"of at least two; {COLUMNS_OPTION} values takes all as one component, row by row"
             )
         wanted = [text for text in reading.column_texts if not text.isdecimal()]
         known, others = names_of(header, width)
