@@ -20,7 +20,7 @@ from .problem import REST_TILT, SUPPORTS, balance_tilt_of_case
 from .simulation import simulate
 from .sliding import peak_displacements
 
-# name of each reduced model: the options of `simulate` and `peak_tilts`
+# reduced models by name, and the options of `simulate` and `peak_tilts` that choose each
 MODELS: Mapping[str, Mapping[str, Any]] = {
     **{support: {"support": support} for support in SUPPORTS},
     "planar": {"plane": 0.0},

@@ -36,7 +36,7 @@ _RELATIVE_IMPORT = re.compile(r"^from (\.+)([\w.]*) import", re.MULTILINE)
 
 
 class _Part(Generic[P, R]):
-    """A function that is compiled into its callers, and by itself only where Python calls it.
+    """Decorator of a function compiled into its callers, and by itself only where Python calls it.
 
     What Python needs to call it takes a fifth of the time to compile all. The callers find it by its
     ``_numba_type_``, and what is to become a part of them by ``targetoptions``, as numba has it.
@@ -66,7 +66,7 @@ def once(function: F) -> F:
 
 
 def inlined(function: F) -> F:
-    """Compile a function into its callers without a call: for the innermost, where a call shows."""
+    """Inline a function into its callers: for innermost functions, where a call costs time."""
     return cast("F", _Part(function, forceinline=True))
 
 
@@ -88,7 +88,7 @@ def kernel(function: F) -> F:
 
 
 def by_body(plain: F, tied: Callable[..., object]) -> F:
-    """Return a function of a body and more that is `plain`, or `tied` where a tendon holds the body.
+    """Dispatch by type at compile time: `plain` for a `Body`, `tied` for a body with a tendon.
 
     A kernel is compiled for each of the two kinds of bodies, and has the one that is meant in the place of
     the call: without a tendon nothing of it is compiled, which leaves the machine code, and its rounding, as
@@ -97,7 +97,7 @@ def by_body(plain: F, tied: Callable[..., object]) -> F:
     names = ", ".join(inspect.signature(plain.py_func).parameters)  # type: ignore[attr-defined]
     first = names.partition(",")[0]
     scope: dict[str, Any] = {"plain": plain, "tied": tied}
-    # the parameters of an overload must have the names of those of the function
+    # numba asks that an overload names its parameters as the function does
     exec(
         f"def function({names}): return (tied if hasattr({first}, 'prestress') else plain).py_func({names})\n"
         f"def choice({names}): return (tied if 'prestress' in {first}.fields else plain).py_func\n",
@@ -111,11 +111,11 @@ def by_body(plain: F, tied: Callable[..., object]) -> F:
 
 
 def _keep_by_content(kept: Any, digest: str) -> None:
-    """Keep machine code under the digest of its sources, and remove what was made from others."""
+    """Cache machine code under the digest of its sources, and remove the cache of other sources."""
     folder, base = Path(kept.cache_path), kept._impl.filename_base
     name = f"{base}.{digest[:16]}"
     kept._cache_file = IndexDataCacheFile(str(folder), name, digest)  # type: ignore[no-untyped-call]
-    # a name holds the line of the function
+    # a global name holds the line number of the function
     for path in folder.glob(re.sub(r"-\d+\.", "-*.", base) + ".*nb[ic]"):
         if not path.name.startswith(name):
             with suppress(OSError):  # a file of another user, or removed meanwhile
@@ -141,7 +141,7 @@ def _digest(source: Path) -> str:
 
 @contextmanager
 def _without_collector() -> Iterator[None]:
-    """Keep the garbage collector out of what a compiler makes and keeps: it takes a fifth of the time.
+    """Disable the garbage collector during a compilation, where it takes a fifth of the time.
 
     Nor is SciPy's linear algebra, which no kernel calls, imported to see whether it is there: a tenth of a
     short command.
@@ -150,7 +150,7 @@ def _without_collector() -> Iterator[None]:
     gc.disable()
     linalg.ensure_blas = lambda: None
     try:
-        import_module("numba.np.arraymath")  # it asks when it is imported
+        import_module("numba.np.arraymath")  # it starts the collector when it is imported
         yield
     finally:
         linalg.ensure_blas = asks
@@ -159,7 +159,7 @@ def _without_collector() -> Iterator[None]:
 
 
 def _keep_in_temporary_folder() -> None:
-    """Let the machine code, also of processes started from here, go to a temporary folder, and say so."""
+    """Move the cache of machine code, of child processes too, to a temporary folder, and say so."""
     folder = (
         Path(tempfile.gettempdir()) / f"rockwobble-compiled-{os.getuid() if hasattr(os, 'getuid') else ''}"
     )
@@ -174,7 +174,7 @@ def _keep_in_temporary_folder() -> None:
 
 
 def _is_ours(folder: Path) -> bool:
-    """Return whether nobody else writes to a folder, made where it is missing: it holds code that runs."""
+    """Whether only this user can write to a folder of machine code, created where it is missing."""
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
         place = folder.lstat()

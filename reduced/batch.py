@@ -91,7 +91,7 @@ def peak_tilts(
                 WobblingFrame(cylinder, slab_mass_ratio),
                 motion,
                 gravity=gravity,
-                friction=tan_alpha + 1.0,  # or it would slide
+                friction=tan_alpha + 1.0,  # friction high enough that none slides
                 rolling_resistance=rolling_resistance,
                 tendon=tendon,
             ),

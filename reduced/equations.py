@@ -37,7 +37,7 @@ _PLANE = 1e-13  # a few hundred roundings: what a rotation of a record leaves ac
 
 @jit
 def in_plane_below(body: Body, ax: float, ay: float) -> float:
-    """Return the acceleration across a plane [m/s^2] that cannot be told from none.
+    """Largest acceleration across a plane [m/s^2] that counts as rounding.
 
     Motion without spin in the plane of the ground acceleration stays there. Rounding across it would
     choose on which side such motion passes the upright position.
@@ -92,7 +92,7 @@ def recess_motion(
         a_t = 0.0
     held = restoring(body, s, c, body.g + az)
     inertial = (body.cos_alpha * c + body.sin_alpha * s) * a_r
-    # the two constants wait for nothing, so they are ready when the rest is
+    # the two constants depend on nothing before, so the processor computes them meanwhile
     centrifugal = half_B_theta * (1.0 / body.A) * (phi_rate * phi_rate)
     theta_acceleration = centrifugal - (body.p2 / body.g) * (held + inertial)
     return theta_acceleration, phi_rate, -(body.h * s + body.b * v) * a_t, s, c

@@ -29,7 +29,7 @@ from .equations import base_inertia, energy, flat_rhs
 from .restoring import TiedBody, tendon_pull
 from .rolling import couple, twist_share
 
-# columns of what `derived_quantities` returns
+# columns of the table of derived quantities
 ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, MOMENT = range(6)
 
 

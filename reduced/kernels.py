@@ -68,7 +68,7 @@ def integrate_resisted_flat(body: Body, options: Options, task: Task) -> Integra
 
 @kernel
 def momentum_of_release(body: Body, tilt: float, rolling_rate: float) -> float:
-    """Return L = B phi' [m^2/s]; an entry point of its own, since to compile it takes longer than a run."""
+    """Momentum L = B phi' of a release [m^2/s]; compiled apart, which takes longer than a run."""
     return spin_momentum(body, tilt, rolling_rate)
 
 
@@ -80,7 +80,7 @@ INTEGRATORS: dict[str, Driver] = {
     "resisted recess": integrate_resisted_recess,
     "resisted flat": integrate_resisted_flat,
 }
-# variables of a state: with rolling resistance the energy lost behind them (`integration.resisted`)
+# number of variables of a state: with rolling resistance the energy lost is the last (`integration.resisted`)
 SIZES = {"planar": 3, "recess": 4, "flat": 8, "resisted planar": 5, "resisted recess": 5, "resisted flat": 9}
 
 
@@ -91,12 +91,12 @@ def load(model: str) -> None:
     start = (0.0,) * SIZES[model]
     INTEGRATORS[model](body, options, Task(np.zeros((0, 3)), 1.0, start, np.zeros(1), np.zeros((0, 2))))
     if not model.endswith("planar"):
-        momentum_of_release(body, 0.1, 0.0)  # or the first release would be timed with its loading
+        momentum_of_release(body, 0.1, 0.0)  # so the first release is timed without its loading
 
 
 @contextmanager
 def interrupted_after() -> Iterator[None]:
-    """Let Ctrl-C within an entry point that returns a named tuple come after it.
+    """Decorator: a Ctrl-C within an entry point that returns a named tuple is raised after it.
 
     What makes that tuple runs as Python code, which raises an interrupt that waits, and numba takes the tuple
     that is then missing for one: the process ends by a fault.

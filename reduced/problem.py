@@ -24,22 +24,22 @@ from .restoring import TERMS, constants_of
 from .rolling import impact_ratio
 
 SUPPORTS: tuple[str, ...] = MODELLED
-_OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
+_OUT_OF_PLANE = 1e-9  # [rad] above the rounding of an azimuth
 
-# Tilt (over alpha) below which the base is closed again. A rest forgets which way the cylinder leans, and
-# the speed that it forgets goes with the root of this tilt. Of 1291 problems (El Centro and FEMA P-695,
-# R from 0.3 to 50 m, tan alpha from 0.1 to 0.4) that two tolerances give alike, the peak differs by more
-# than 2 % from that of a hundred times smaller tilt in 10.1, 3.9, 1.4, 0.5, 0.3 and 0.3 % at 1e-5, 1e-6,
-# 1e-7, 1e-8, 1e-9 and 1e-10: from 1e-8 on it is what the tolerance leaves. The steps grow by a sixth from
-# 1e-5 to 1e-8, and the longest chatter from 59 to 251 steps a sample.
+# Tilt (over alpha) below which the base is closed again. A rest discards the direction of the tilt and a
+# speed that grows with the root of this tilt. Of 1291 problems (El Centro and FEMA P-695, R from 0.3 to 50 m,
+# tan alpha from 0.1 to 0.4) whose peaks at two tolerances agree, the peak differs by more than 2 % from that
+# of a hundred times smaller tilt in 10.1, 3.9, 1.4, 0.5, 0.3 and 0.3 % at 1e-5, 1e-6, 1e-7, 1e-8, 1e-9 and
+# 1e-10: from 1e-8 on the tolerance decides. The steps grow by a sixth from 1e-5 to 1e-8, and the longest
+# chatter from 59 to 251 steps a sample.
 REST_TILT = 1e-8
 # With energy lost at each impact the impacts accumulate in finite time: some bound is needed.
 _LEAST_WITH_LOSS = 1e-9
 # Steps allowed before a run is given up, at least and per record sample or time 1/p: two orders above what a
 # record of strong shaking takes. Rocking at the rest threshold without end takes 5e4 in a time 1/p.
 _BUDGET, _BUDGET_PER_SAMPLE, _BUDGET_PER_TIME = 500_000, 50, 100_000
-# A spin (over p) whose passes are as near to the upright position as numbers can be to zero. A weaker one
-# turns by the same angle, that of vanishing spin, and is solved as this one.
+# Spin (over p) whose passes are as near to upright as a double can be to zero. A weaker spin turns by the
+# same angle, that of vanishing spin, and is solved as this one.
 _LEAST_SPIN = 1e-100
 LARGEST_REST_TILT = 0.1  # tilt of the rest rule over alpha
 
@@ -51,14 +51,14 @@ def ground_at(case: Case, times: NDArray[np.float64]) -> NDArray[np.float64]:
     if motion is None:
         return np.zeros((len(times), 3))
     at = np.arange(len(record)) * motion.time_step
-    # the last instant of a run may round beyond the last sample
+    # rounding may place the end of a run beyond the last sample
     inside = times <= min(motion.duration, case.length) * (1.0 + 1e-12)
     return np.column_stack([np.where(inside, np.interp(times, at, column), 0.0) for column in record.T])
 
 
 @lru_cache(maxsize=4)
 def is_spatial(motion: GroundMotion) -> bool:
-    """Whether the motion is in no vertical plane by more than any rounding."""
+    """Whether the motion leaves every vertical plane by more than rounding."""
     record = three_columns(motion)
     largest = record[int(np.square(record[:, :2]).sum(axis=1).argmax())]
     return not stays_in_plane(record, math.atan2(largest[1], largest[0]), 1e4 * PLANE_TOLERANCE)
@@ -81,7 +81,7 @@ def sample_times(duration: float, sample_step: float) -> NDArray[np.float64]:
     return times
 
 
-# kept for the runs that follow with the same motion: it takes a tenth of the time of a short one
+# cached for further runs with the same motion: it takes a tenth of the time of a short one
 @lru_cache(maxsize=4)
 def three_columns(motion: GroundMotion | None) -> NDArray[np.float64]:
     """Return the samples of a motion (n, 3) [m/s^2], zeros where it has no vertical component."""
@@ -100,7 +100,7 @@ class Plane(NamedTuple):
 
 
 class SetUp(NamedTuple):
-    """A time integration, whatever the size of the cylinder where it starts at rest."""
+    """Inputs of a time integration; independent of the size of a cylinder that starts at rest."""
 
     integrate: Driver
     task: Task
@@ -109,7 +109,7 @@ class SetUp(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """One run of a reduced model, solved as often as something new is asked of it; options as of `simulate`.
+    """One run of a reduced model, solved again for each further quantity; options as of `simulate`.
 
     Raises
     ------
@@ -154,7 +154,7 @@ class Problem:
             )
 
     def __getstate__(self) -> dict[str, Any]:
-        # derived values are not pickled: compiled code is compiled again where it arrives
+        # cached properties are not pickled: compiled code would be compiled again in the other process
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @property
@@ -182,37 +182,37 @@ class Problem:
     ) -> tuple[IntegrationResult, float]:
         """Return the result with states at `times` (n,) [s], and the azimuth its angles count from."""
         integrate, task, azimuth = self._set_up
-        # a column of a table would have the time integration compiled for its stride
+        # numba would compile the time integration again for a strided column
         task = task._replace(times=np.ascontiguousarray(times))
         with kernels.interrupted_after():
             result = integrate(self.body, self._options._replace(record_steps=record_steps), task)
         return self._decide(result), azimuth
 
     def shaking(self, factor: float) -> SetUp:
-        """Return the integration of a run from rest under ``motion.scaled(factor)``, for its peak only."""
+        """Integration of a run from rest under ``motion.scaled(factor)``, for its peak only."""
         motion = self.case.motion
         assert motion is not None
         if self.plane is not None or not is_spatial(motion) or not math.isfinite(factor * self._peak):
             scaled = replace(self, case=replace(self.case, motion=motion.scaled(factor)))
             return scaled._set_up._replace(task=scaled._set_up.task._replace(later=scaled._later))
-        # far from planar, so that the plane need not be looked for: a third of the time of a short run
+        # clearly spatial, so that the search for a plane is skipped: a third of the time of a short run
         task = self._set_up.task
         task = task._replace(record=task.record * factor, later=self._later * factor)
         return self._set_up._replace(task=task)
 
     def solve_under(self, shaking: SetUp) -> IntegrationResult:
-        """Return the result for this body under a motion of another size, for the peak only."""
+        """Result for this body under a motion of another size, for the peak only."""
         with kernels.interrupted_after():
             result = shaking.integrate(self.body, self._options, shaking.task)
         return self._decide(result)
 
     def _decide(self, result: IntegrationResult) -> IntegrationResult:
-        # rolling resistance holds what stands on the balance
+        # rolling resistance holds a body that stands on its balance
         return result if self.case.rolling_resistance else decide(self.body, result)
 
     @property
     def free_twist(self) -> bool:
-        """Whether the model has a twist: on flat ground, but not where it is planar by choice."""
+        """Whether the model has a twist: on flat ground, unless planar by choice."""
         return self.plane is None and not support_named(self.support).guided
 
     @property
@@ -227,7 +227,7 @@ class Problem:
 
     @cached_property
     def kernel(self) -> str:
-        """The name of the compiled model that solves it."""
+        """Name of the compiled model of this problem."""
         model = "planar" if self.is_planar() else self.model
         return f"resisted {model}" if self.case.rolling_resistance > 0.0 else model
 
@@ -262,7 +262,7 @@ class Problem:
 
     @cached_property
     def _later(self) -> NDArray[np.float64]:
-        """Largest |a| and least az from each sample on (m, 2) [m/s^2]; none where a fall may yet be held."""
+        """Largest |a| and least az from each sample on (m, 2) [m/s^2]; none where a fall may stop."""
         record = self._set_up.task.record
         if self.free_twist and not self.is_planar():
             return np.empty((0, 2))
@@ -278,7 +278,7 @@ class Problem:
             return (0.0,) * size
         start = float(initial.tilt), float(initial.tilt_rate)
         if self.is_planar():
-            # the azimuth of the plane or its opposite
+            # the angle is the azimuth of the plane or its opposite
             angle = 0.0 if math.cos(initial.rolling_angle - azimuth) >= 0.0 else math.pi
             return (*start, angle, *(0.0,) * (size - 3))
         rate = float(initial.rolling_rate)
@@ -289,7 +289,7 @@ class Problem:
 
     @cached_property
     def _plane(self) -> Plane | None:
-        """The vertical plane that the motion stays in, if there is one."""
+        """Vertical plane that contains the whole motion, if there is one."""
         azimuth = plane_of(self.case) if self.plane is None else float(self.plane)
         if azimuth is None:
             return None

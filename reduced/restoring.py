@@ -116,7 +116,7 @@ def acceleration_back(body: Body, theta: float) -> float:
 
 @inlined
 def _no_energy(body: Body, c: float) -> float:
-    """Return the energy in the tendon beyond that upright [m^2/s^2], from the cosine of the tilt."""
+    """Zero energy where there is no tendon."""
     return -0.0
 
 
@@ -137,7 +137,7 @@ def stored_energy(body: Body, s: float, c: float, t: float) -> float:
 
 @inlined
 def _no_pull(body: Body, c: float) -> tuple[float, float]:
-    """Return the force of the tendon on the base, downward and inward, over (1 + gamma) m [m/s^2]."""
+    """Zero force on the base where there is no tendon."""
     return 0.0, 0.0
 
 
@@ -195,7 +195,7 @@ def surely_overturns(body: Body, theta: float, strongest: float, lightest: float
 
 @inlined
 def _one(body: Body, v: float) -> float:
-    """Return u, for which nobody asks without a tendon: a root would change how the rest is rounded."""
+    """The factor u without a tendon, 1: no root, which would change the rounding."""
     return 1.0
 
 
@@ -211,7 +211,7 @@ half_cosine = by_body(_one, _half_cosine)
 def _coefficient_alone(
     body: Body, weight: float, s: float, v: float, u0: float, order: int, c: NDArray[np.float64], place: int
 ) -> float:
-    """Return the coefficient of `order` of r, from those of the weight, of s and of v.
+    """Coefficient of `order` of r without a tendon, from those of the weight, of s and of v.
 
     That of u is written to `c` behind `place`, where those of lower order stand; `u0` is that of order 0.
     """
@@ -240,8 +240,8 @@ def _coefficient_tied(
 with_tendon_coefficient = by_body(_coefficient_alone, _coefficient_tied)
 
 
-# closed forms (`exact`), in t = tan(theta/2), of a number or of each in an array; R is the semidiagonal, and
-# `gap` is alpha - theta, which keeps its digits next to alpha
+# closed forms (`exact`), in t = tan(theta/2), of a number or an array; R is the semidiagonal, and `gap` is
+# alpha - theta, which keeps its digits next to alpha
 
 
 def couple(body: Body, R: float, t: T, gap: T) -> T:
@@ -303,7 +303,7 @@ def sigma_slope(body: Body, z: float, y: float, x: T) -> T | float:
 
 
 def balance_tilt(body: TiedBody) -> float:
-    """Return the tilt at which r vanishes for good [rad]; infinite where it is positive up to pi/2.
+    """Tilt beyond which r stays negative [rad]; infinite where r is positive up to pi/2.
 
     Beyond alpha: at alpha the weight has no couple, and the tendon has one. Only shaking or spin overturns
     a body that has none.
@@ -321,7 +321,7 @@ def balance_tilt(body: TiedBody) -> float:
     return low
 
 
-# terms of a case that the models have, see `constants_of`
+# terms of a case that the reduced models have, see `constants_of`
 TERMS = frozenset({"rolling_resistance", "tendon"})
 
 

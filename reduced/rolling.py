@@ -42,8 +42,8 @@ from .equations import base_inertia
 from .restoring import tendon_couple
 
 CREEP = 1e-6  # eps over p: errors of 1e-6 alpha, and explicit steps that a creeping body still allows
-# tilt over alpha below which eps falls with it, so that an uplift, whose first rates are below eps, meets the
-# couple; and the share of eps that is left upright
+# tilt over alpha below which eps falls with it, so that the couple acts on an uplift, whose first rates are
+# below eps; and the share of eps at upright
 _SMALL, _LEAST = 1e-6, 1e-6
 
 
@@ -89,14 +89,14 @@ def couple(
 
 @inlined
 def twist_share(body: Body, s: float, c: float) -> float:
-    """Return s (1 - G/B), the part that a couple along the lean has in S'."""
+    """Factor s (1 - G/B) in S' of a couple along the tilt vector."""
     t = s / (1.0 + c)
     return s - (body.E + body.C * t) / base_inertia(body, t)
 
 
 @inlined
 def rolling_momentum(body: Body, theta: float, Lambda: float, S: float) -> float:
-    """Return B phi' [m^2/s], Lambda and what the twist rate takes off it."""
+    """Momentum B phi' [m^2/s], Lambda and the reduction of both by the twist rate."""
     s, c = sin(theta), cos(theta)
     t = s / (1.0 + c)
     H = base_inertia(body, t)

@@ -95,7 +95,7 @@ def simulate(
     times = sample_times(case.length, sample_step)
     started = time.perf_counter()
     result, azimuth = problem.solve(times)
-    if result.end > case.length:  # it overturns later
+    if result.end > case.length:  # overturned after the duration
         times = sample_times(result.end, sample_step)
         result, azimuth = problem.solve(times)
     return _trace(problem, result, azimuth, times, time.perf_counter() - started)
@@ -131,7 +131,7 @@ def _trace(
         moving = np.append(moving, True)
     full = six_columns(states, azimuth)
     if overturned:
-        full[-1, 0] = OVERTURNED_TILT  # the last of a Newton iteration
+        full[-1, 0] = OVERTURNED_TILT  # last tilt exactly pi/2, which Newton's iteration reaches to rounding
     outcome = _OUTCOMES.get(result.status, "failed")
     extrema = result.extrema
     extrema[:, 2] += azimuth
@@ -179,7 +179,7 @@ def _trace(
 
 
 def _facts(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
-    """Facts of a run: what ended it, and what it leaves undetermined."""
+    """Diagnostics of a run: its ending, and the quantities that it leaves undetermined."""
     if result.status == OVER_BUDGET:
         yield Diagnostic(code="step_budget", time=result.end, size=result.step_count - 1.0)
     elif result.status not in _OUTCOMES:

@@ -1,4 +1,4 @@
-"""The sliding model: from rest on flat ground with friction below b/h, a body of any size slides and no more.
+"""The sliding model: a body of any size, at rest on flat ground with friction below b/h, only slides.
 
 The moment of friction, at most mu N h, never reaches N b, so the base never uplifts. Friction is everywhere
 opposite to one velocity v, the pressure has its centre at mu h from the axis along v, and the resultant
@@ -29,7 +29,7 @@ from .kernels import interrupted_after
 from .problem import ground_at, sample_times, three_columns
 
 _TOLERANCE = 1e-13  # error of the speed in a step: the displacement to 1e-10 of its peak
-_COARSE = 1e-8  # tolerance of many at once: to 1e-7 of the peak, in two thirds of the time
+_COARSE = 1e-8  # tolerance of a batch of slides: to 1e-7 of the peak, in two thirds of the time
 _NONE = np.empty(0)  # no sample times
 
 

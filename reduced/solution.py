@@ -22,16 +22,16 @@ from .problem import Problem, ground_at, in_plane
 if TYPE_CHECKING:
     import pandas as pd
 
-# variables of a state: those of them that stand in the six columns
+# columns of a state that stand in the six columns, by number of variables
 _WIDTHS = {size: min(kernels.SIZES[name.split()[-1]], 6) for name, size in kernels.SIZES.items()}
 # Parts of a step at which the demands are looked at: between two of them they are close to a parabola. A run
 # of a million steps, which is chatter, has fewer.
 _PARTS, _LEAST_PARTS, _MOST_TIMES = 8, 2, 400_000
-_ROUNDS = 5  # each looks eight times closer, so that a parabola is off by 8^-8 of what it was at first
+_ROUNDS = 5  # rounds of refinement by eight, so that the error of a parabola falls to 8^-8 of its first value
 
 
 class Demands(NamedTuple):
-    """Demands of a solution at n times; those with a closed base included, where nothing is asked."""
+    """Demands of a solution at n times, also where the base is closed, which no limit concerns."""
 
     normal: Array  # (n,) least normal force in weights
     load: Array  # (n,) largest normal force in weights
@@ -94,7 +94,7 @@ class Solution(CompactRepr):
         landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
         if problem.rebound == 1.0 or not len(landings):
             return np.zeros(len(self.time))
-        result, _ = problem.solve(landings)  # before they rebound
+        result, _ = problem.solve(landings)  # states just before the rebound
         rate = result.samples[: result.reached, 1]
         lost = 0.5 * problem.body.A * (1.0 - problem.rebound**2) * rate * rate
         before = np.searchsorted(landings[: len(lost)], self.time)
@@ -138,13 +138,13 @@ class Solution(CompactRepr):
             (angle[2:] - angle[:-2])[at],
             np.ones(np.count_nonzero(at), dtype=bool),
         )
-        # made at once and named after: names take longer than many a run
+        # stored as one array and named later: naming takes longer than many a run
         table = pd.DataFrame(dict(enumerate(columns)))
         table.columns = _pass_columns()
         return table
 
     def assumptions(self, until: float) -> Assumptions:
-        """Return whether contact and friction held until a time [s]; solved again, between its steps too.
+        """Whether contact and friction held until a time [s], also between the steps.
 
         From a tilt of `CLOSED_TILT` alpha on.
         """
@@ -162,7 +162,7 @@ class Solution(CompactRepr):
         derived, top = self._derive(times[:reached], six_columns(result.samples[:reached], azimuth))
         force = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
         least, largest, friction = force[:, 2], force[:, 2], friction_of(force)
-        if top is not None:  # whichever end asks for more
+        if top is not None:  # the larger demand of both ends counts
             least, largest = np.minimum(least, top[:, 2]), np.maximum(largest, top[:, 2])
             friction = np.maximum(friction, friction_of(top))
         opens = result.samples[:reached, 0] >= CLOSED_TILT * self.problem.body.alpha
@@ -221,7 +221,7 @@ def review(
         return Assumptions(friction=friction)
 
     def slips(demands: Demands) -> NDArray[np.bool_]:
-        # where contact is lost it is that which is said
+        # loss of contact takes precedence over friction
         return demands.open_base & (demands.normal > 0.0) & (demands.friction > friction)
 
     def largest(quantity: Callable[[Demands], Array]) -> tuple[float, float]:
@@ -232,7 +232,7 @@ def review(
     normal, _ = largest(lambda demands: demands.load)
     moment, _ = largest(lambda demands: np.abs(demands.moment))
     if (pull >= 0.0 and not _contact_loss(samples).any()) or (need > friction and not slips(samples).any()):
-        # a breach that is shorter than a part of a step
+        # a breach shorter than a part of a step
         times = np.union1d(times, [pulled, needed])
         samples = demands_at(times)
     breaches = []
@@ -264,7 +264,7 @@ def _breach(
     bound: float,
 ) -> Diagnostic:
     broken = broken_at(demands)
-    # where a breach begins or ends, ever closer: a step of a fall takes tenths of a second
+    # time at which a breach begins or ends, refined: a step of a fall takes tenths of a second
     for _ in range(_ROUNDS - 1):
         changes = np.flatnonzero(broken[1:] != broken[:-1])
         times = np.unique(np.concatenate([times, *(_subdivision(times[i : i + 2], _PARTS) for i in changes)]))
@@ -284,7 +284,7 @@ def _largest(
     times: Array,
     demands: Demands,
 ) -> tuple[float, float]:
-    """Return the largest value of an open base, sought ever closer about that at `times`, and its time."""
+    """Largest value of an open base, refined about the largest at `times`, and its time."""
     best, when = -math.inf, math.nan
     for _ in range(_ROUNDS):
         values = np.where(demands.open_base, quantity(demands), -math.inf)

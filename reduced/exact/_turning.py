@@ -29,12 +29,12 @@ from ..restoring import couple, couple_slope, sigma
 from ._shape import T, base_inertia, beta, inertia_growth
 
 _SMALLEST = 2.0**-1022  # absolute tolerance of the root finder: none, so that small tilts keep their digits
-_RTOL = 4.0 * 2.0**-52  # the least that the root finder allows
+_RTOL = 4.0 * 2.0**-52  # smallest tolerance that the root finder allows
 _STRIDE = 4.0  # growth of the bracket in the search; a few strides, wherever the root lies
 
 
 class Turning(NamedTuple):
-    """The turning tilts; the distance of the larger from alpha is kept as it was given."""
+    """Turning tilts, with the distance of the larger one from alpha stored besides, not as a difference."""
 
     t1: float  # tan(theta/2) at the minimum
     t2: float  # tan(theta/2) at the maximum
@@ -71,7 +71,7 @@ def _inner(body: Body, R: float, t0: float, gap0: float, kinetic: float, rolling
     n0 = 1.0 + t0 * t0
     G0 = t0 * t0 * base_inertia(body, t0)
 
-    # both per phi0'^2/t^2: the root goes with the spin, and the square of a spin may underflow
+    # both over phi0'^2/t^2: the root is proportional to the spin, whose square may underflow
     def drive(x: float) -> float:
         fall = body.g * sigma(body, R, gap0, t0, t0 - x) / ((1.0 + x * x) * n0)
         return base_inertia(body, x) * (kinetic + 2.0 * (t0 - x) * fall if kinetic else fall)

@@ -56,7 +56,7 @@ class _OfTilts(Protocol):
 
 
 def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
-    """Let a function of an array take one tilt as well, and refuse those that are not below the balance."""
+    """Make a function of an array accept one tilt, and refuse tilts at or beyond the balance."""
 
     @wraps(function)
     def wrapper(
@@ -66,7 +66,7 @@ def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
         if tendon is not None:
             largest = min(constants_of(cylinder, gravity, tendon=tendon).balance, OVERTURNED_TILT)
             name = "the balance tilt" if largest < OVERTURNED_TILT else "pi/2"
-        outside = ~((theta > 0.0) & (theta < largest))  # also where it is not a number
+        outside = ~((theta > 0.0) & (theta < largest))  # NaN counts as outside
         if np.any(outside):
             first = float(np.extract(outside, theta)[0])
             raise ValueError(f"tilt must be above 0 and below {name} = {largest!r} [rad], got {first!r}")
@@ -162,7 +162,7 @@ def quarter_period(body: Body, R: float, theta: Array, gap: Array) -> Array:
     from scipy.special import elliprf
 
     if isinstance(body, TiedBody):
-        # limit of a narrow pass
+        # limit for a narrow pass
         return np.vectorize(lambda t2, gap2: half_period(body, R, t2, gap2))(np.tan(0.5 * theta), gap)
     k, k1 = np.sin(0.5 * gap), np.cos(0.5 * gap)
     K, K1 = np.sin(0.5 * body.alpha), np.cos(0.5 * body.alpha)

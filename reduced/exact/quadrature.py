@@ -30,7 +30,7 @@ _ROUNDING = 8.0 * 2.0**-52  # rounding of the difference of the two terms of q
 
 
 class HalfCycle(NamedTuple):
-    """From tilt minimum to tilt maximum."""
+    """Rolling angle and time from a tilt minimum to the next maximum."""
 
     turn: float  # rolling angle, unsigned [rad]
     time: float  # [s]

@@ -26,7 +26,7 @@ _ABOVE = 1e-6  # relative margin over a maximum, more than rounding of the tilt 
 
 
 def decide(body: Body, result: IntegrationResult) -> IntegrationResult:
-    """Return a result, undecided where its largest tilt is the balance itself: a turn there is rounding.
+    """Mark a result as undecided where its peak is the balance itself, so that rounding decides.
 
     Here and not in the kernel, whose last bits hang on how much there is to compile.
     """
@@ -38,7 +38,7 @@ def decide(body: Body, result: IntegrationResult) -> IntegrationResult:
 
 @jit
 def longest_stay(body: Body) -> float:
-    """Return the time that a motion may stay by its balance, and then fall from there [s]."""
+    """Longest time that a motion may stay by its balance, and then fall from there [s]."""
     return (LONGEST + log(OVERTURNED_TILT / body.alpha)) / body.p
 
 
@@ -59,7 +59,7 @@ def turns_back(body: Body, acceleration: float) -> bool:
 
 @jit
 def turn_since(rows: Log, since: float, last: float) -> tuple[float, float, float]:
-    """Part of the log from a time [s] to the first maximum after it.
+    """Rows of the log from a time [s] to the first maximum after it.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def turn_since(rows: Log, since: float, last: float) -> tuple[float, float, floa
 
 @jit
 def free_acceleration(body: Body, theta: float, L: float) -> float:
-    """Return theta'' over still ground, without twist and losses, (18) [rad/s^2].
+    """Tilt acceleration over still ground, without twist and losses, (18) [rad/s^2].
 
     Its own formula, not the one of the model: one more call of that changes the last bits of all runs, by
     where the compiler fuses a multiplication with an addition.
@@ -102,7 +102,7 @@ def free_acceleration(body: Body, theta: float, L: float) -> float:
 
 @jit
 def departs(body: Body, theta: float, L: float) -> bool:
-    """Return whether a small distance from a tilt grows: in a stable steady wobble it does not."""
+    """Whether a small distance from a tilt grows, as it does not in a stable steady wobble."""
     beyond = free_acceleration(body, theta * (1.0 + _NEARBY), L)
     return beyond > free_acceleration(body, theta, L)
 
@@ -111,7 +111,7 @@ def departs(body: Body, theta: float, L: float) -> bool:
 def is_undecided(
     body: Body, theta: float, L: float, rows: Log, since: float, last: float, falls: bool, grows: bool
 ) -> bool:
-    """Return whether rounding, or the error of the solution, decided what became of a motion.
+    """Whether rounding, or the error of the solution, decided between a fall and a return.
 
     `theta` and `L` are its tilt and spin at the end, `since` is when the ground began to keep still, `last`
     the time reached [s], `falls` says that the side came to the ground, and `grows` that a later maximum may

@@ -53,10 +53,10 @@ from .stepping import Stepper
 from .systems import System
 
 _FIRST_STEP = 1e-3  # first step in 1/p of a run that begins in motion
-# a literal 0 has a type of its own, for which its users would be compiled too
+# numba gives a literal 0 a type of its own, for which its users would be compiled again
 _FIRST_SAMPLE = cast("int", np.int64(0))
-# time in 1/p within which all motion turns or falls but stable steady wobble and what is nearer than 3e-7 to
-# the balance, which is followed on
+# time in 1/p after which a motion has turned or fallen; exceptions are stable steady wobble and a tilt nearer
+# than 3e-7 to the balance, which is followed on
 _LONGEST = 15.0
 
 
@@ -71,7 +71,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         """Solve one problem."""
         record, time_step, initial, times, later = task
         owned = workspace(initial), np.zeros((len(times), len(initial))), np.zeros(len(times), dtype=np.bool_)
-        # borrowed until the last use of what they were borrowed from, at the end
+        # arrays borrowed without counting references; their owners are used last at the end of the function
         work, wanted = borrowed(owned[0]), (borrowed(times), borrowed(owned[1]), borrowed(owned[2]))
         bounds = borrowed(later)
         log = empty_log(initial)
@@ -86,7 +86,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         while run.status == COMPLETED:
             jumps = False
             if now >= end:
-                stays = False  # no `continue` here, after which references would be counted in each step
+                stays = False  # a flag: `continue` makes numba count references
                 if following and not run.resting and departs(body, run.y[0], momenta(run.y)[0]):
                     longest, since, _ = turn_since(log, still, now)
                     stays = longest <= longest_stay(body) and not (grows and has_turned(log, still))

@@ -20,10 +20,10 @@ from .systems import System, make_is_flat
 
 TAKEN, REPEATED = range(2)  # fate of a step
 NO_TURN = 0.0  # beside MAXIMUM and MINIMUM
-# evaluations before the last, which moves a turning point by so little of the step
+# trial evaluations before the last one, which moves a turning point by so small a share of the step
 _FEWEST, _CLOSE = 2, 1e-7
 _TANGENTS = 20  # evaluations in search of a reversal
-_RETRY = 1.0 / 32.0  # factor on a step that went wrong; the next may be four times as long
+_RETRY = 1.0 / 32.0  # factor on the length of a failed step; the next may be four times as long
 
 
 class Turn(NamedTuple):
@@ -39,25 +39,25 @@ NONE = Turn(NO_TURN, 0.0, 0.0, 0.0)
 
 
 class Trial(NamedTuple):
-    """A step that was tried."""
+    """A trial step."""
 
     verdict: int  # TAKEN, or REPEATED with the length `h_next`
     h: float  # its length [s]
     h_next: float  # length proposed for the next one [s]
-    trials: int  # how often its method tried
+    trials: int  # number of trials of its method
     y: State  # state at its end
-    k: State  # values kept for the next step, with ``path``
+    k: State  # values handed to the next step, with ``path``
     path: object
     turn: Turn
     flat: bool  # motion without spin and twist rate: exactly planar
 
 
 class Ending(NamedTuple):
-    """The end of a step: as it was taken, or earlier, where base or side meet the ground."""
+    """End of a step: its full length, or earlier, where the base or the side meets the ground."""
 
     h: float  # its length [s]
     y: State
-    lands: bool  # the base, in planar motion
+    lands: bool  # whether the base lands, in planar motion
     overturns: bool  # the side
     turns: bool  # the turning point lies before this end
 
@@ -133,7 +133,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
     def reversal(
         body: Body, work: NDArray[np.float64], path: object, y: State, h: float, rate_at_end: float
     ) -> float:
-        """Return a time in a step at which the tilt rate has the sign that it has at neither end; 0 if none.
+        """A time in a step at which the tilt rate has the opposite sign of that at both ends; 0 if none.
 
         Where the rate is least in size is sought by its tangents, above which it stays between a time at
         which it falls in size and one at which it grows.
@@ -145,7 +145,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
         for _ in range(_TANGENTS):
             if slope_high <= 0.0:
                 break
-            # where the tangents at both ends meet
+            # intersection of the tangents at both ends
             at = (rate_high - rate_low + slope_low * low - slope_high * high) / (slope_low - slope_high)
             if rate_low + slope_low * (at - low) > 0.0:
                 break
@@ -204,10 +204,10 @@ def make_events(system: System, stepper: Stepper) -> Events:
         """Return the end of a step from `y`."""
         h, y_new, turn = trial.h, trial.y, trial.turn
         turns = turn.kind != NO_TURN
-        # a body without a balance may turn back just beyond, within the step
+        # a body without a balance may turn back just beyond pi/2, within the step
         beyond = turn.kind == MAXIMUM and turn.tilt >= OVERTURNED_TILT
         overturns = beyond or y_new[0] >= OVERTURNED_TILT
-        # the tilt stays positive with spin; without it the base meets the ground
+        # with spin the tilt stays positive; without spin the base meets the ground
         lands = trial.flat and not beyond and (y_new[0] <= 0.0 or (turns and turn.tilt <= 0.0))
         if not (lands or overturns):
             return Ending(h, y_new, lands, overturns, turns)

@@ -53,7 +53,7 @@ def may_come_to_rest(
     beyond which the motion cannot rise. The twist is left to the friction of the base that closes.
     """
     limit = rest_tilt * body.alpha
-    if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
+    if theta > 10.0 * limit:  # above the bound of rest, unless az exceeds 9 g
         return False
     standing = energy(body, limit, 0.0, 0.0, 0.0)
     held = (1.0 + a[2] / body.g) * (1.0 + body.delta / body.b)
@@ -73,7 +73,7 @@ Wanted = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]  # t
 
 
 class Sampling(NamedTuple):
-    """The compiled functions that fill in the samples of a stretch; each returns the next one to fill."""
+    """Compiled functions that fill in samples; each returns the index of the next sample to fill."""
 
     of_rest: Callable[..., int]
     of_uplift: Callable[..., int]
@@ -85,7 +85,7 @@ def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[Sta
 
     @inlined
     def of_rest(wanted: Wanted, sample: int, until: float, y: State) -> int:
-        """Fill in where the cylinder stands."""
+        """Fill in samples during a rest."""
         times, states, _ = wanted
         while sample < len(times) and times[sample] <= until:
             write(y, states[sample])
@@ -104,7 +104,7 @@ def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[Sta
         begin: float,
         y: State,
     ) -> int:
-        """Fill in what the series of an uplift covers, which begins at the time `begin`."""
+        """Fill in samples within the series of an uplift, which begins at the time `begin`."""
         times, states, moving = wanted
         while sample < len(times) and times[sample] <= until:
             write(lifted(body, time_step, piece, lift, times[sample] - begin, y), states[sample])
@@ -123,7 +123,7 @@ def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[Sta
         begin: float,
         y_new: State,
     ) -> int:
-        """Fill in a step from the time `begin` to `until`, where the state is `y_new`."""
+        """Fill in samples of a step from the time `begin` to `until`, where the state is `y_new`."""
         times, states, moving = wanted
         while sample < len(times) and times[sample] <= until:
             if times[sample] == until:
@@ -138,8 +138,8 @@ def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[Sta
     return Sampling(of_rest, of_uplift, of_step)
 
 
-_LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
-_HAIR = 1e-6  # time in 1/p; an uplift so near to the next sample leaves no more than its square
+_LEAST_STEP = 1e-200  # [s]; a shorter step is given up, whatever the cause
+_HAIR = 1e-6  # time in 1/p from an uplift to the next sample that is skipped: the tilt there is its square
 
 
 @jit
@@ -159,36 +159,36 @@ class Lift(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """A run between two steps, in a piece of the record."""
+    """State of a run between two steps, in a piece of the record."""
 
     elapsed: float  # since the beginning of the piece [s]
     y: State
-    k: State  # values kept for the next step
+    k: State  # values handed to the next step
     h_next: float  # length proposed for the next step [s]
-    restart: bool  # the state or the forcing jumps here, so that `k` is made anew
+    restart: bool  # whether the state or the forcing jumps here, so that `k` is computed anew
     resting: bool
     peak: float  # largest tilt so far [rad]
-    sample: int  # the next one to fill in
+    sample: int  # index of the next sample to fill
     step_count: int
     status: int
 
 
 class Step(NamedTuple):
-    """One step of a run, and what there is to list of it."""
+    """One step of a run, with the turning point and the landing in it."""
 
     run: Stage  # run after the step
     turn: Turn  # the turning point inside it
-    landing: Turn  # state at its end
+    landing: Turn  # landing of the base, with the state at its end
 
 
 @inlined
 def absolute_time(piece: Piece, elapsed: float) -> float:
-    """Return the time `elapsed` after the beginning of a piece, exactly its end where it is over [s]."""
+    """Time `elapsed` after the beginning of a piece; where the piece is over, exactly its end [s]."""
     return piece.finish if elapsed >= piece.length else piece.begin + elapsed
 
 
 class Progress(NamedTuple):
-    """The compiled functions that carry a run on."""
+    """Compiled functions that advance a run."""
 
     lifted: Callable[..., State]  # (body, time_step, piece, at, time, last)
     detect_uplift: Callable[..., Lift]  # (body, rtol, time_step, piece, elapsed, y)
@@ -219,7 +219,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     def detect_uplift(
         body: Body, rtol: float, time_step: float, piece: Piece, elapsed: float, y: State
     ) -> Lift:
-        """Return the uplift of a cylinder at rest after `elapsed` of a piece, if it does.
+        """Uplift of a cylinder at rest in the rest of a piece after `elapsed`, if there is one.
 
         An uplift within a hair of the next sample is taken up there, already above the threshold,
         however short that sample is.
@@ -233,7 +233,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
 
     @inlined
     def bounce(body: Body, y: State, restitution: float) -> State:
-        """Return the state after the base met the ground in planar motion: contact changes sides."""
+        """State after the base met the ground in planar motion, where contact changes sides."""
         turn = -pi if y[2] > 0.0 else pi
         return placed(body, y, 0.0, restitution * abs(y[1]), y[2] + turn, 0.0)
 
@@ -241,19 +241,19 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
 
     @inlined
     def at_beginning(run: Stage, jumps: bool) -> Stage:
-        """Return a run as it enters a piece; `jumps` says that the forcing does."""
+        """Run at the beginning of a piece; `jumps` says whether the forcing jumps there."""
         _, y, k, h_next, restart, resting, peak, sample, step_count, status = run
         return Stage(0.0, y, k, h_next, restart or jumps, resting, peak, sample, step_count, status)
 
     @inlined
     def falls(body: Body, y: State, later: NDArray[np.float64], index: int) -> bool:
-        """Return whether no ground motion to come can keep the side from the ground."""
+        """Whether no later ground motion can keep the side from the ground."""
         outward = index < len(later) and y[0] > body.balance and y[1] >= 0.0
         return outward and surely_overturns(body, y[0], later[index, 0], body.g + later[index, 1])
 
     @inlined
     def at_rest(body: Body, run: Stage) -> Stage:
-        """Return a run that stands from here on."""
+        """Run at rest from this time on."""
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         y = placed(body, y, 0.0, 0.0, y[2], 0.0)
         return Stage(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
@@ -267,7 +267,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         begin = piece.finish if lift.stays else piece.begin + lift.at
         sample = sample_rest(wanted, sample, begin, y)
         elapsed = piece.length if lift.stays else lift.at + lift.length
-        if lift.stays or lift.y[0] <= 0.0:  # or touched the threshold and fell back
+        if lift.stays or lift.y[0] <= 0.0:  # no uplift, or one that only touched the threshold
             return Stage(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
         until = piece.begin + elapsed
         sample = sample_uplift(wanted, sample, until, body, time_step, piece, lift.at, begin, y)
@@ -286,7 +286,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         wanted: Wanted,
         run: Stage,
     ) -> Step:
-        """Take one step in the piece behind sample `index`, to an event at the most.
+        """Advance by one step in the piece after sample `index`, at most to the next event.
 
         `following` says that the duration is over, so that the next maximum ends the run.
         """
@@ -326,7 +326,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
             elif ending.lands:
                 landing = Turn(MINIMUM, ending.h, 0.0, y[2])
                 y, restart = bounce(body, y, options.restitution), True
-                resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
+                resting = y[1] == 0.0  # no speed is left: it stands, or uplifts again by (25) and (26)
             if not ending.overturns:
                 a = ground(piece.a, piece.slope, elapsed)
                 if options.rest_tilt > 0.0:

@@ -32,7 +32,7 @@ def ground(a: Vector, slope: Vector, t: float) -> Vector:
 def piece_of_record(
     record: NDArray[np.float64], time_step: float, index: int, begin: float, last: float
 ) -> Piece:
-    """Return the stretch behind sample `index`, from `begin` and to `last` at the latest [s]."""
+    """Piece of the record after sample `index`, from `begin` to `last` at the latest [s]."""
     if index >= len(record) - 1:  # the ground is still after the record
         return Piece(begin, last, last - begin, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     end = index + 1

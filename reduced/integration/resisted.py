@@ -20,8 +20,8 @@ from .result import State
 from .stepping import runge_kutta
 from .systems import FLAT, RECESS, System, Weights, flat_combine, flat_ratio, scales
 
-# least spin over still ground, over that of steady wobble, in tolerances. The couple takes spin by orders
-# of magnitude in a pass, but never its sense, which a step of its error could turn
+# least spin over still ground, over that of steady wobble, in tolerances. In a pass the couple lowers spin by
+# orders of magnitude but never reverses it, which the error of one step could do
 _LEAST_SPIN = 10.0
 
 
@@ -77,7 +77,7 @@ def _recess_ratio(
 
 
 def _with_loss(combine: Callable[..., State]) -> Callable[..., State]:
-    """Return y + h sum(weights slopes), with the energy lost."""
+    """Weighted sum y + h sum(weights slopes) of a step, with the energy lost."""
 
     @jit
     def combined(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
@@ -91,7 +91,7 @@ def _with_loss(combine: Callable[..., State]) -> Callable[..., State]:
 
 @jit
 def _with_least_spin(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
-    """Return a state of the recess model before a step over still ground, with its sense of rolling."""
+    """State of the recess model before a step, its spin raised to the least one so that it keeps its sign."""
     still = a[0] == 0.0 and a[1] == 0.0 and slope[0] == 0.0 and slope[1] == 0.0
     if not still or y[3] == 0.0:
         return y
@@ -121,7 +121,7 @@ def _is_slow(body: Body, s: float, omega: float, across: float) -> bool:
 
 
 def _system(model: System, derivative: Callable[..., State], creeps: Callable[[Body, State], bool]) -> System:
-    """Return a model with the equations `derivative`, which keeps account of the energy lost."""
+    """Model with the equations `derivative` and one more variable, the energy lost."""
     momenta, placed_before = model.momenta, model.placed
 
     @jit

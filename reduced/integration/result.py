@@ -18,15 +18,14 @@ REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a time integ
 UNDECIDED = 6  # rounding decides whether it falls (`balance`)
 TURNED = 5  # while it runs: the tilt has reached its first maximum after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
-# copy of the bound in `models.bounds`: machine code is kept by the content of this folder, which must hold
-# all its numbers
+# copy of the bound in `models.bounds`: the cache of machine code knows the content of this folder alone
 OVERTURNED_TILT = 0.5 * pi
 
 
 class Options(NamedTuple):
     """Options of a time integration."""
 
-    rtol: float  # tolerance of one step, relative
+    rtol: float  # relative tolerance of one step
     rest_tilt: float  # tilt of the rest rule over alpha; 0 leaves the rule out
     restitution: float  # ratio of tilt rates where the base meets the ground in planar motion
     duration: float  # [s]
@@ -50,17 +49,17 @@ class IntegrationResult(NamedTuple):
     """Result of a time integration; `size` is the number of variables of the model."""
 
     status: int
-    end: float  # time reached [s]; later than the duration only where it overturns after it
-    followed_until: float  # time to which it was followed after the duration [s]; NaN if it did not move then
-    peak: float  # largest tilt, until then [rad]
+    end: float  # end of the run [s]; later than the duration only where it overturns after it
+    followed_until: float  # end of the motion followed after the duration [s]; NaN if it stood
+    peak: float  # largest tilt up to that time [rad]
     uplift_time: float  # first uplift, or 0 for a release [s]; NaN if there is none
     uplift_direction: float  # rolling angle there [rad]
     samples: NDArray[np.float64]  # (n, size) state at the times asked for
     moving: NDArray[np.bool_]  # (n,) False where the cylinder stands
-    reached: int  # how many samples were reached
+    reached: int  # number of samples reached
     final: NDArray[np.float64]  # (size,) state at the end
     extrema: NDArray[np.float64]  # (k, 4) time, tilt, rolling angle, MAXIMUM or MINIMUM
-    rests: NDArray[np.float64]  # (r, 2) when it came to rest after moving, and moved again or NaN [s]
+    rests: NDArray[np.float64]  # (r, 2) times of rest after motion, and of the next motion or NaN [s]
     steps: NDArray[np.float64]  # (j, 1 + size) time and state after each step, if recorded
     step_count: int
 
@@ -89,7 +88,7 @@ class Log(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """State at the end of the duration, from which the motion is followed."""
+    """State at the end of the duration, from which a motion is followed on."""
 
     y: State
     counts: tuple[int, int, int]  # rows of the log

@@ -29,14 +29,14 @@ from numpy.typing import NDArray
 
 from .._compile import jit, kernel
 
-_ORDER = 20  # the highest; a low one costs more steps where it starts and stops
+_ORDER = 20  # highest order; a low one costs more steps at a start or a stop
 _WIDTH = _ORDER + 1
 P, Q, S, C, D, T, X, Y, PATH, LOST = range(10)  # rows of the coefficients
 Force = tuple[float, float, float, float]  # f at the beginning of a sample and its rates [m/s^2, m/s^3]
 
-_STILL = 1e-11  # speed that counts as none, over what gravity gives in a sample
+_STILL = 1e-11  # speed that counts as zero, over the speed that gravity gives in a sample
 _STEADY = 0.1  # share of n - |f| by which it may change while a body stops
-_SOON = 0.25  # share of |f| by which f may change in a short time, as a power of the tolerance: 6e-4 of 1e-13
+_SOON = 0.25  # share of |f| by which f may change in a short start, a power of the tolerance: 6e-4 of 1e-13
 # Low is a speed at which the direction lags that of f by so many radians at most; K over |f| of such a time,
 # over the root of the share above; and by how much the direction may be off that lag [rad], to which it is
 # drawn within |v|/|f|.
@@ -47,12 +47,12 @@ VALUES = 7  # numbers of a sample: x, y, x', y', path, energy lost per unit mass
 class Slide(NamedTuple):
     """Result of a slide."""
 
-    lost_contact: float  # when g + az reaches 0 [s]; NaN if it does not
-    began: float  # when it first slides [s]; NaN if it does not
-    end: float  # when it came to rest after the run, or the end of the run [s]
-    slides: bool  # whether it still does at the end: without friction it never rests
+    lost_contact: float  # time at which g + az reaches 0 [s]; NaN if it does not
+    began: float  # time of the first slide [s]; NaN if there is none
+    end: float  # time of rest after the run, or the end of the run [s]
+    slides: bool  # whether it slides at the end: without friction it never rests
     peak: float  # largest distance from where it stood [m]
-    samples: NDArray[np.float64]  # (n, VALUES) at the times asked for
+    samples: NDArray[np.float64]  # (n, VALUES) at the sample times
     steps: int
 
 
@@ -61,11 +61,11 @@ def _first_excess(f: Force, n0: float, n1: float, start: float, end: float) -> f
     """First time in start..end at which |f| exceeds n, both linear in time; infinite if none."""
     fx, fy, gx, gy = f
     c2 = gx * gx + gy * gy - n1 * n1
-    c1 = fx * gx + fy * gy - n0 * n1  # half of it
+    c1 = fx * gx + fy * gy - n0 * n1  # half of the coefficient
     c0 = fx * fx + fy * fy - n0 * n0
     if c0 + start * (2.0 * c1 + start * c2) > 0.0:
         return start
-    slope = c1 + c2 * start  # half of it, at the start
+    slope = c1 + c2 * start  # half of the slope at the start
     if c0 + end * (2.0 * c1 + end * c2) <= 0.0 and (c2 >= 0.0 or slope <= 0.0):
         return inf
     root = c1 * c1 - c0 * c2
@@ -85,7 +85,7 @@ def _first_excess(f: Force, n0: float, n1: float, start: float, end: float) -> f
 @jit
 def _expand(c: NDArray[np.float64], order: int, reach: float, tolerance: float,
             f: Force, n0: float, n1: float) -> tuple[int, float]:  # fmt: skip
-    """Series of all but path and energy from their values at s = 0: order, and the largest s they hold for.
+    """Series of all but path and energy from their values at s = 0: order, and the largest valid s.
 
     It ends at the order that is enough for the time `reach` [s].
     """
@@ -98,7 +98,7 @@ def _expand(c: NDArray[np.float64], order: int, reach: float, tolerance: float,
     guess, power, last = inf, inf, inf
     for k in range(order):
         pull, turn, along, across = 0.0, 0.0, c[S, 0] * c[C, k], c[S, 0] * c[D, k]
-        for i in range(1, k + 1):  # sums that do not wait for one another, for speed
+        for i in range(1, k + 1):  # sums independent of one another, which the processor adds in parallel
             pull += c[T, i] * c[P, k - i]
             turn += c[T, i] * c[Q, k - i]
             along += c[S, i] * c[C, k - i]
@@ -109,7 +109,7 @@ def _expand(c: NDArray[np.float64], order: int, reach: float, tolerance: float,
         c[T, k + 1] = c[S, k] / (k + 1)
         c[X, k + 1], c[Y, k + 1] = along / (k + 1), across / (k + 1)
         pp, qq, pq = 0.0, 0.0, 0.0
-        for i in range((k + 2) // 2):  # half of them, for they are symmetric
+        for i in range((k + 2) // 2):  # half of the terms, as they are symmetric
             j = k + 1 - i
             pp += c[P, i] * c[P, j]
             qq += c[Q, i] * c[Q, j]
@@ -164,7 +164,7 @@ def _at(c: NDArray[np.float64], row: int, order: int, s: float) -> float:
 
 @jit
 def _when(c: NDArray[np.float64], order: int, time: float, end: float) -> float:
-    """The s in 0..end at which the series reaches a time: Newton's iteration of what grows steadily."""
+    """Root s in 0..end at which the series reaches a time, by Newton's iteration."""
     low, high = 0.0, end
     s = end if 0.9 * c[T, 1] * end < time else time / c[T, 1]
     for _ in range(60):
@@ -188,7 +188,7 @@ def _when(c: NDArray[np.float64], order: int, time: float, end: float) -> float:
 
 @jit
 def _rotate(c: NDArray[np.float64], order: int, end: float) -> float:
-    """Largest distance within a step at whose start it moves away, and at whose end it comes back [m]."""
+    """Largest distance within a step that begins outwards and ends inwards [m]."""
     low, high = 0.0, end
     for _ in range(50):
         s = 0.5 * (low + high)
@@ -203,14 +203,14 @@ def _rotate(c: NDArray[np.float64], order: int, end: float) -> float:
 @jit
 def _creep(f: Force, n0: float, n1: float, time: float, left: float, v0: float,
            soon: float) -> tuple[float, float, float, float, float, float]:  # fmt: skip
-    """A short time from `time` on, with f almost the same: its length, then x, y, speed, direction and path.
+    """A short start from `time` on, with f almost constant: its length, then x, y, speed, direction and path.
 
     It begins at rest, or at a low speed v0 in a direction that follows that of f; a speed of 0 is a stop.
     """
     fx, fy, gx, gy = f
     fx, fy, n = fx + gx * time, fy + gy * time, n0 + n1 * time
     force, slope = hypot(fx, fy), hypot(gx, gy)
-    if force == 0.0:  # frictionless: from a root of f
+    if force == 0.0:  # frictionless: begins at a root of f
         e = left
         speed = 0.5 * slope * e * e
         return e, gx * e**3 / 6.0, gy * e**3 / 6.0, speed, atan2(gy, gx), slope * e**3 / 6.0
@@ -332,7 +332,7 @@ def slide(
                     change * spent * spent < stops
                     and change <= _STEADY * (n - force)
                     and spent <= reach
-                    and (taken == count or times[taken] >= base + now + spent)  # no sample on its way
+                    and (taken == count or times[taken] >= base + now + spent)  # no sample lies on its way
                     and (x * (p * p - q * q) + y * 2.0 * p * q <= 0.0 or x * fx + y * fy >= 0.0)
                 ):
                     x, y, path, lost = x + dx, y + dy, path + moved, lost + n * moved
@@ -387,7 +387,7 @@ def slide(
             peak = max(peak, x * x + y * y)
             now += spent
             slides = p * p + q * q > still
-    # over still ground along a line, whose farthest point is an end of it
+    # over still ground along a line, so that the farthest point is an end of it
     end, speed, slows = duration, p * p + q * q, friction * gravity
     if not slides:
         speed, slows = 0.0, 1.0

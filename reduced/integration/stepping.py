@@ -74,7 +74,7 @@ ERROR = (
 def make_step(
     derivative: Callable[[Body, State, Vector], State], combine: Callable[..., State]
 ) -> Callable[..., tuple[State, State, State, float]]:
-    """Return the compiled step of a system.
+    """Compiled step of a system.
 
     ``derivative(body, y, a)`` returns y' under the ground acceleration `a`, and
     ``combine(y, h, weights, slopes)`` returns y + h sum(weights slopes). The step is
@@ -110,13 +110,13 @@ def make_step(
 _SAFETY = 0.9  # aims below the tolerance, so that few steps are repeated
 _GROWTH, _SHRINK = 5.0, 0.2  # bounds on the change of the step from one to the next
 _SMALL = (_SAFETY / _GROWTH) ** 5  # error ratio below which the step grows by _GROWTH
-_MOST_TRIALS = 200  # each shortens the step: enough to come down from any length to none
+_MOST_TRIALS = 200  # each trial shortens the step: enough to come down from any length to zero
 
 _Path = tuple[State, State, Vector, Vector]  # Runge-Kutta step: its start, and the motion of the ground
 
 
 class Stepper(NamedTuple):
-    """The compiled functions of one method: how it steps, and how it fills a step.
+    """Compiled functions of one method: its step, and its interpolation within a step.
 
     ``k`` is a tuple and ``work`` an array that one step leaves to the next, ``path`` says with
     ``work`` what the last step was. The integration never assigns ``work`` anew: counting the references
@@ -175,13 +175,13 @@ def runge_kutta(system: System, combine: Callable[..., State], error_ratio: Call
         for trial in range(1, _MOST_TRIALS + 1):
             h = min(proposed, length)
             if proposed < length < 2.0 * proposed:
-                h = 0.5 * length  # two even steps instead of a long and a short one
+                h = 0.5 * length  # two even steps in place of a long and a short one
             y_new, k_new, error, lowest = step(body, y, k, h, a, slope)
             flat = is_flat(y) and is_flat(y_new)
             ratio = error_ratio(body, rtol, h, y, y_new, error, flat)
             if ratio <= 1.0 and (lowest > 0.0 or flat):
                 longer = h * (_GROWTH if ratio < _SMALL else _SAFETY * ratio**-0.2)
-                # a step cut short by the length says nothing against the longer one proposed
+                # a step cut short by the length is no reason to shorten the next
                 return h, (longer if h == proposed else max(longer, proposed)), trial, y_new, k_new, path
             shorter = _SHRINK
             if lowest > 0.0 and 1.0 < ratio < np.inf:
@@ -191,7 +191,7 @@ def runge_kutta(system: System, combine: Callable[..., State], error_ratio: Call
 
     @jit
     def partial(body: Body, work: NDArray[np.float64], path: _Path, time: float) -> tuple[State, State]:
-        """Return the state and its derivative: by a step, as accurate as those of the integration."""
+        """State and derivative within a step, each by a step of its own, as accurate as the integration."""
         y, k, a, slope = path
         y_new, k_new, _, _ = step(body, y, k, time, a, slope)
         return y_new, k_new

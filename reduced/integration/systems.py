@@ -39,7 +39,7 @@ def identity(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> Sta
 
 @jit
 def in_motion(body: Body, y: State) -> bool:
-    """Return False: nothing holds a tilted body."""
+    """Always False: nothing holds a tilted body."""
     return False
 
 
@@ -49,10 +49,10 @@ class System(NamedTuple):
     derivative: Callable[[Body, State, Vector], State]  # (body, y, a) -> y'
     momenta: Callable[[State], tuple[float, float]]  # y -> (L or Lambda, S)
     placed: Callable[..., State]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
-    prepares: bool = False  # a state before each step, by what follows
+    prepares: bool = False  # whether `ready` changes a state before each step
     ready: Callable[..., State] = identity  # (body, rtol, y, a, slope) -> y before a step
-    creeps: Callable[[Body, State], bool] = in_motion  # is it held, tilted, by rolling resistance?
-    grows: bool = False  # over still ground a later maximum of the tilt may be larger than the first
+    creeps: Callable[[Body, State], bool] = in_motion  # whether rolling resistance holds it, tilted
+    grows: bool = False  # whether over still ground a later maximum of the tilt may exceed the first
 
 
 def make_is_flat(momenta: Callable[[State], tuple[float, float]]) -> Callable[[State], bool]:
@@ -94,7 +94,7 @@ def _planar_derivative(body: Body, y: State, a: Vector) -> State:
 
 @jit
 def planar_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
-    """Return y + h sum(weights slopes)."""
+    """Weighted sum y + h sum(weights slopes) of a step."""
     a = b = c = 0.0
     for j in range(len(weights)):
         w, k = weights[j], slopes[j]
@@ -118,7 +118,7 @@ def _planar_placed(body: Body, y: State, theta: float, omega: float, phi: float,
 def planar_ratio(
     body: Body, rtol: float, h: float, y: State, y_new: State, error: State, flat: bool
 ) -> float:
-    """Return the largest error over what is allowed."""
+    """Largest error of a component over the error allowed."""
     per_tilt, per_rate = scales(body, rtol, y[0], y[1], 0.0, True)
     return max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
 
@@ -148,7 +148,7 @@ def _flat_derivative(body: Body, y: State, a: Vector) -> State:
 
 @jit
 def flat_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
-    """Return y + h sum(weights slopes)."""
+    """Weighted sum y + h sum(weights slopes) of a step."""
     a = b = c = d = e = f = x = z = 0.0
     for j in range(len(weights)):
         w, k = weights[j], slopes[j]
@@ -184,7 +184,7 @@ def _flat_placed(body: Body, y: State, theta: float, omega: float, phi: float, L
 
 @jit
 def flat_ratio(body: Body, rtol: float, h: float, y: State, y_new: State, error: State, flat: bool) -> float:
-    """Return the largest error over what is allowed."""
+    """Largest error of a component over the error allowed."""
     per_lever = 0.0 if flat else 1.0 / (body.J * y[0])
     per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)
     ratio = max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)

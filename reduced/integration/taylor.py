@@ -42,13 +42,13 @@ from .record import Vector
 from .result import State
 from .systems import scales
 
-_ORDER = 16  # the highest; from 12 to 16 the cost is the same at 1e-8, and a high one serves 1e-12
+_ORDER = 16  # highest order; from 12 to 16 the cost is the same at 1e-8, and a high order serves 1e-12
 _WIDTH = _ORDER + 1
 TILT, RATE, ANGLE, MOMENTUM, S, V, COS, SIN, B, Q, W, WW, X, D, RADIAL, ACROSS = (
     _WIDTH * i for i in range(16)
 )
 TRIG = 16 * _WIDTH  # s, v, cos phi and sin phi at the end of the step
-STEPS_LEFT = TRIG + 4  # for so many steps these may still be taken over
+STEPS_LEFT = TRIG + 4  # number of steps for which sine and cosine may still be taken over
 U = STEPS_LEFT + 1  # cos(theta/2), with a tendon
 _SIZE = U + _WIDTH
 
@@ -76,7 +76,7 @@ def state_at(c: NDArray[np.float64], order: int, x: float) -> State:
 
 @jit
 def partial(body: Body, c: NDArray[np.float64], path: Path, time: float) -> tuple[State, State]:
-    """Return the state at `time` [s] after the start of a step and its derivative: of the same series."""
+    """State at `time` [s] after the start of a step, and its derivative, both from the same series."""
     unit, order = path
     x = time / unit
     acceleration, angle_rate = order * c[RATE + order], order * c[ANGLE + order]
@@ -96,15 +96,15 @@ def acceleration(c: NDArray[np.float64], path: Path) -> float:
     return float(c[RATE + 1] / unit)
 
 
-_LEAST_ORDER = 4  # below it two terms in a row may be small by accident
-# constants all the same, but of one type with every other order: a literal has a type of its own, and what
-# takes it would be compiled for each
+_LEAST_ORDER = 4  # below this order two successive terms may be small by accident
+# constants with a type in common with every other order: numba types a literal by its value and would compile
+# its users for each
 _SECOND, _THIRD, _FOURTH = (cast("int", np.int64(order)) for order in (2, 3, 4))
-# A step aims at a remainder of this share of the tolerance, as a geometric series with the ratio of
-# the last two terms has it: in a close pass the remainders of a hundred steps have one sign.
+# share of the tolerance that the remainder of a step aims at, estimated as a geometric series with the ratio
+# of the last two terms: in a close pass the remainders of a hundred steps have one sign
 _AIM = 0.1
-_LAST_BUT_ONE = 10.0  # tolerances that the term before the last may be large, whatever the last one is
-_KEPT_FOR = 32.0  # steps for which sine and cosine are taken over: rounding adds up no further
+_LAST_BUT_ONE = 10.0  # tolerances that the term before the last may be large, whatever the last term
+_KEPT_FOR = 32.0  # number of steps for which sine and cosine are taken over: rounding adds up no further
 
 
 class Origin(NamedTuple):
@@ -132,7 +132,7 @@ class Origin(NamedTuple):
 
 
 class Sums(NamedTuple):
-    """A series summed up to some order at the unit of time, and the last term of Y."""
+    """Sums of the series to some order at the unit of time, with its last term of sin(alpha - theta)."""
 
     tilt: float
     rate: float
@@ -146,7 +146,7 @@ class Sums(NamedTuple):
 
 
 class Last(NamedTuple):
-    """The coefficients of highest order, kept out of memory: the next order waits for them."""
+    """Coefficients of highest order, passed as values: the next order would wait for memory."""
 
     rate: float
     momentum: float
@@ -192,7 +192,7 @@ def expand(
     if L == 0.0:
         least = in_plane_below(body, ax, ay)
         flat = abs(t0) <= least and abs(day * cos0 - dax * sin0) <= least
-    if flat:  # axes of its plane leave nothing across it to rounding
+    if flat:  # planar motion in the axes of its plane, so that rounding adds nothing across it
         ax, ay, t0 = r0, 0.0, 0.0
         dax, day = dax * cos0 + day * sin0, 0.0
         cos0, sin0 = 1.0, 0.0
@@ -238,7 +238,7 @@ def expand(
     tilt, rate, angle, momentum = theta + tilt_1, omega + rate_1, phi + angle_1, L + momentum_1
     sums = Sums(tilt, rate, angle, momentum, s0 + s_1, v0 + v_1, cos0 + cos_1, sin0 + sin_1, Y0)
 
-    # the orders that every step takes, one by one: as constants they compile to straight code
+    # the orders of every step unrolled: with constants they compile to straight code
     newest = Last(rate_1, momentum_1, s_1, v_1, cos_1, sin_1, cos0, sin0)
     sums, newest, _ = extend(body, zero, sums, newest, h, _SECOND, c)
     sums, newest, before = extend(body, zero, sums, newest, h, _THIRD, c)
@@ -262,7 +262,7 @@ def extend(
     ax, ay, gravity = zero.ground
     dax, day, daz = zero.change
     k = order - 1
-    # the parts of the products of order k from orders below k: one loop, sums side by side
+    # the parts of the products of order k from lower orders: one loop, sums side by side
     sv = vv = v_rate = s_rate = cos_w = sin_w = B_w = ww = Q_ww = X_r = D_t = 0.0
     for j in range(1, k):
         i = k - j
@@ -307,7 +307,7 @@ def extend(
     c[MOMENTUM + order] = momentum
     c[S + order], c[V + order], c[COS + order], c[SIN + order] = s, v, cos, sin
     per_tilt, per_rate, per_angle, per_momentum = zero.per_allowed
-    # a sum, because a maximum would be branches
+    # a sum, as a maximum would compile to branches
     size = (abs(tilt) * per_tilt + abs(rate) * per_rate) + (
         abs(angle) * per_angle + abs(momentum) * per_momentum
     )
@@ -330,7 +330,7 @@ def extend(
 
 @inlined
 def fits(last: float, before: float) -> bool:
-    """Return whether a series with these last two terms, in tolerances, may end here."""
+    """Whether a series whose last two terms are these, in tolerances, may end here."""
     return last * last <= _AIM * (before - last) and before <= _LAST_BUT_ONE
 
 
@@ -341,14 +341,14 @@ _SHRINK = 1.0 / 32.0  # factor on a step not taken; the next trial is _GROWTH ti
 
 @jit
 def restart(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> State:
-    """Forget the sine and cosine of the last step: the state has jumped."""
+    """Discard the sine and cosine of the last step after a jump of the state."""
     work[STEPS_LEFT] = 0.0
     return y
 
 
 @jit
 def fitting_share(order: int, last: float, before: float) -> float:
-    """Return the share of the unit of time at which a series with these last two terms fits."""
+    """Share of the unit of time at which a series with these last two terms, in tolerances, may end."""
     by_remainder = (_AIM * before / (last * last)) ** (1.0 / (order + 1))
     by_term = (_LAST_BUT_ONE / before) ** (1.0 / (order - 1))
     return float(_SAFETY * min(1.0, by_remainder, by_term))
@@ -377,7 +377,7 @@ def advance(
     if not fits(last, before):
         share = fitting_share(order, last, before)
         if share > 0.5 and unit == length:
-            share = 0.5  # two even steps instead of a long and a short one
+            share = 0.5  # two even steps in place of a long and a short one
         taken = proposed = share * unit
         y_new = state_at(work, order, share)
         work[STEPS_LEFT] = 0.0

@@ -21,13 +21,13 @@ from ..equations import in_plane_below
 from ..restoring import growth_at_uplift, standing_force
 from .record import Vector, ground
 
-# The series is left at the share x of the shortest time scale there: 1/p, and the time in which the
-# ground acceleration turns or changes by its own size. The terms left out are below x^3 relative to
-# those kept, so x^3 is the tolerance. The solution oscillates there about the direction of the inertia
-# force, ever faster towards t = 0, so an earlier start costs steps, about 1/sqrt(x).
+# The series ends at the share x of the shortest time scale there: 1/p, and the time in which the ground
+# acceleration turns or changes by its own size. The terms left out are below x^3 relative to the others, so
+# x^3 is the tolerance. The solution oscillates about the direction of the inertia force, ever faster towards
+# t = 0, so an earlier start of the integration costs steps, about 1/sqrt(x).
 _LATEST_START = 5e-3
-# Where the very first sample is already over the threshold the oscillation is only logarithmic in
-# t, and a start this much earlier is free.
+# Where the very first sample is already over the threshold the oscillation is only logarithmic in t, and a
+# start earlier by this factor costs nothing.
 STEP_START = 1e-6
 # Below this share of g a horizontal acceleration has no direction; it lifts only where g + az <= 0.
 WEAK = 1e-12
@@ -47,7 +47,7 @@ def uplift_slope(body: Body) -> float:
 
 @jit
 def uplift_in(body: Body, a: Vector, slope: Vector, end: float) -> float:
-    """Return the first time in [0, end) at which f reaches zero and rises, or -1.0.
+    """First time in [0, end) at which f rises through zero, or -1.0.
 
     Times count from where the acceleration is `a`, with rate `slope` per second. A root at `end`
     itself belongs to the next sample.
@@ -177,15 +177,15 @@ def shortest_time(body: Body, a: Vector, slope: Vector, at: float) -> float:
 
 @jit
 def starts_as_step(F0: float, F1: float, unit: float) -> bool:
-    """Return whether the jump F0 of theta'', in any unit, outweighs its rise F1 t at the first of times."""
+    """Whether the jump F0 of theta'', in any unit, outweighs its rise F1 t at the first of the times."""
     return abs(F1) * STEP_START * unit < F0
 
 
 @jit
 def start_length(body: Body, rtol: float, a: Vector, slope: Vector, at: float) -> float:
-    """Return for how long after uplift [s] the series is used."""
+    """Time after uplift [s] for which the series is used."""
     ax, ay, az = ground(a, slope, at)
-    # both over p^2 cos(alpha)/g
+    # both slopes over p^2 cos(alpha)/g
     F0 = max(excess(body, (ax, ay, az)), 0.0)
     along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
     F1 = along - slope[2] * uplift_slope(body)

@@ -17,7 +17,7 @@ def test_steady_wobble_needs_the_friction_of_its_centripetal_force():
     response = reduced.simulate(Case(PIER, initial=InitialState(tilt, rolling_rate=rate), duration=2.0))
     radius = math.hypot(*response.centre_of_mass[0, :2])
     review = response.assumptions
-    # the mass centre goes round on a circle at constant height: N is the weight
+    # the mass centre circles at constant height: N is the weight
     assert review.least_normal_force == pytest.approx(1.0, abs=1e-9)
     assert review.largest_friction_needed == pytest.approx(rate**2 * radius / 9.81, rel=1e-8)
     assert review.all_hold
@@ -43,8 +43,8 @@ def test_contact_loss_shorter_than_a_step_is_reported(rtol):
 
 @pytest.mark.parametrize("length", [0.0, 0.05])
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_demands_are_those_of_an_open_base(support, length):
-    """Extrema over the motion are those of its samples with an open base, however near upright it passes."""
+def test_demands_are_extrema_over_samples_with_an_open_base(support, length):
+    """The sampled extrema with an open base, however near upright the motion passes."""
     release = InitialState(0.3 * PIER.alpha, rolling_rate=1e-4)
     case = Case(PIER, initial=release, duration=5.0, rolling_resistance=length)
     response = reduced.simulate(case, support=support, sample_step=2e-4)
@@ -52,7 +52,7 @@ def test_demands_are_those_of_an_open_base(support, length):
     assert (response.tilt[opens] >= CLOSED_TILT * PIER.alpha).all()
     assert np.count_nonzero(~opens & (response.tilt > 0.0)) > 0
     force = response.contact_force
-    # samples of 0.2 ms miss what the base feels as it closes by some percent
+    # samples of 0.2 ms miss the demand of a closing base by some percent
     for largest, sampled in (
         (review.largest_normal_force, force[opens, 2].max()),
         (review.largest_friction_needed, response.friction_needed[opens].max()),

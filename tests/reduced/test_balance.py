@@ -1,4 +1,4 @@
-"""Releases on the balance and next to it: what falls, what turns back, and what only rounding decides."""
+"""Releases on the balance and next to it: fall, return, or undecided by rounding."""
 
 import math
 
@@ -14,7 +14,7 @@ SHAPES = [(0.5, 0.05), (2.0, 0.2), (math.hypot(0.5, 2.5), 0.2), (30.0, 1.0)]
 def case(
     size: float, tan_alpha: float, tilts: float, times: float, *, slab: float = 0.0, **start: float
 ) -> Case:
-    """Return a release at so many alpha that runs for so many 1/p."""
+    """A release at some tilt over alpha, with a duration in 1/p."""
     cylinder = WobblingFrame(Cylinder(semidiagonal=size, tan_alpha=tan_alpha), slab)
     duration = times / body_of(cylinder, 9.81).p
     return Case(cylinder, initial=InitialState(tilts * cylinder.alpha, **start), duration=duration)
@@ -33,7 +33,7 @@ def test_a_body_at_balance_is_undecided_for_any_duration(size: float, tan_alpha:
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize(("size", "tan_alpha"), SHAPES)
-def test_next_to_the_balance_the_side_of_it_decides(
+def test_a_release_on_either_side_of_the_balance_falls_or_returns(
     size: float, tan_alpha: float, distance: float, support: str
 ) -> None:
     for times in (1.0, 15.0, 200.0):
@@ -47,7 +47,7 @@ def test_next_to_the_balance_the_side_of_it_decides(
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
 def test_a_release_below_the_balance_never_falls(distance: float, support: str) -> None:
-    # in an undamped motion each swing comes back to the balance, which the error of the solution may pass
+    # undamped, each swing returns to the balance, which the error of the solution may exceed
     for times in (10.0, 17.0, 30.0, 60.0, 200.0):
         for rate in (0.0, 1e-7):
             trace = simulate(case(2.0, 0.2, 1.0 - distance, times, rolling_rate=rate), support=support)
@@ -55,7 +55,7 @@ def test_a_release_below_the_balance_never_falls(distance: float, support: str) 
             assert trace.outcome == "undecided" or trace.peak_tilt <= trace.case.cylinder.alpha
 
 
-def test_rolling_resistance_holds_what_sits_on_its_balance() -> None:
+def test_rolling_resistance_holds_a_body_on_its_balance() -> None:
     on = case(2.0, 0.2, 1.0, 100.0)
     trace = simulate(Case(on.cylinder, initial=on.initial, duration=on.duration, rolling_resistance=0.01))
     assert (trace.outcome, trace.peak_tilt) == ("stands", trace.tilt[0])

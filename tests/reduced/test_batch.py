@@ -1,4 +1,4 @@
-"""Grids of runs: the same as single runs, whatever the number of threads."""
+"""Grids of runs: equal to single runs, whatever the number of threads."""
 
 import math
 
@@ -13,7 +13,7 @@ SIZES = np.array([0.8, 3.0, 10.0])
 SCALES = np.linspace(0.3, 4.0, 12)
 
 
-def test_the_same_bits_whatever_the_number_of_threads():
+def test_peaks_are_the_same_bits_for_any_number_of_threads():
     one = reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES, workers=1)
     four = reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES, workers=4)
     assert np.array_equal(one, four)
@@ -32,9 +32,9 @@ def test_progress_ends_at_one_and_an_interruption_passes_through():
         reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES, progress=interrupt)
 
 
-# Size [m] and peak of the resultant over g tan(alpha): small cylinders that the record only just lifts.
-# Undamped they rock hundreds of times a second for the rest of it: some 30 to 350 steps a sample, of which
-# a third of the record gives enough.
+# Size [m] and peak of the resultant over g tan(alpha): small cylinders just above uplift. Undamped they rock
+# hundreds of times a second to the end of the record: some 30 to 350 steps a sample, for which a third of the
+# record suffices.
 BEGINNING = GroundMotion(EL_CENTRO.acceleration[:1800], EL_CENTRO.time_step)
 BARELY_LIFTED = [
     ("recess", 0.1, 0.5, 1.01727),
@@ -83,7 +83,7 @@ def test_every_cell_is_its_single_run_to_the_bit(model, slab, length):
         ([1.0], 300 * ["a"], "scales .* got 300 items$"),
     ],
 )
-def test_bad_axes_are_named_on_a_line(sizes, scales, words):
+def test_bad_axes_are_refused_by_name(sizes, scales, words):
     with pytest.raises(ValueError, match=words) as caught:
         reduced.peak_tilts(sizes, 0.1, EL_CENTRO, scales)
     assert len(str(caught.value)) <= 110
@@ -96,8 +96,8 @@ def test_bad_axes_are_named_on_a_line(sizes, scales, words):
     ids=["later shaking", "a tenth of the weight", "ground that falls faster than g"],
 )
 def test_a_fall_that_later_shaking_stops_is_not_called_certain(push, length, weight):
-    # of falls that half of the shaking, or the whole weight, would make certain ones; the loss at the landing
-    # lets a cylinder that comes back stand
+    # falls that would be certain under half of the shaking or under the whole weight; the loss at the landing
+    # lets a cylinder that returns stand
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     times = np.array([0.0, 0.5, 1.0, 2.0, 2.25, 2.25 + length, 2.5 + length, 10.0])
     at = 0.25 * np.arange(41)
@@ -109,7 +109,7 @@ def test_a_fall_that_later_shaking_stops_is_not_called_certain(push, length, wei
         columns = [np.interp(at, times, values) for values in (along, 0.0 * along, up)]
         record = GroundMotion(np.column_stack(columns), 0.25)
         whole = reduced.simulate(Case(pier, record), sample_step=1.0, **options)
-        # a scale of two on half of the record: the same numbers, and the scale is there
+        # half of the record times a scale of two: equal numbers, with a scale in the batch
         early = reduced.peak_tilts([6.0], 0.2, record.scaled(0.5), [2.0], workers=1, **options)[0, 0]
         assert early == pytest.approx(whole.peak_tilt, abs=1e-12 * pier.alpha), strength
         back += whole.outcome != "overturned" and whole.peak_tilt > pier.alpha

@@ -13,7 +13,7 @@ TOLERANCES = 10.0 ** np.arange(-5.0, -10.5, -1.0)
 
 
 def pulse():
-    """One sine of 2 s in one direction, half of one across it."""
+    """Pulse of a sine of 2 s in one direction, and half of its size across it."""
     time = np.linspace(0.0, 2.0, 101)
     a = 2.6 * np.column_stack([np.sin(math.pi * time), 0.3 * np.sin(0.5 * math.pi * time)])
     return GroundMotion(a, 0.02)

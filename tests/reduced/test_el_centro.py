@@ -28,8 +28,8 @@ def test_uplift_and_motion_follow_the_printed_equations(response):
     assert response.uplift_direction == pytest.approx(direction, abs=1e-10)
     first = math.ceil(uplift / motion.time_step)
     ours = response.tilt[first : first + len(states)]
-    # The reference starts 1e-4 s late without the lag of the contact, which swings on at 1e-8 rad;
-    # each of the three passes at 3e-4 to 9e-4 rad multiplies what there is by ten or more.
+    # The reference starts 1e-4 s late without the lag of the contact, which oscillates on at 1e-8 rad; each
+    # of the three passes at 3e-4 to 9e-4 rad multiplies a difference by ten or more.
     assert np.abs(ours - states[:, 0])[:20].max() <= 1e-8 * PIER.alpha
     assert np.abs(ours - states[:, 0]).max() <= 1e-6 * PIER.alpha
 

@@ -23,7 +23,7 @@ from rockwobble.reduced.exact import (
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 ROUNDING = 1e-14  # relative; some tens of operations in double precision
 SLENDERNESS = [1e-3, 0.05, 0.2, 1.0, 5.0, 1e3]
-FOUR_DECIMALS = 0.5e-4 + 1e-9  # the same for a table of 4 decimals
+FOUR_DECIMALS = 0.5e-4 + 1e-9  # half a digit of a table of 4 decimals
 TABLE_ROUNDING = 1e-13  # of a quarter period, next to half a unit in the last printed digit
 FLATTEST = 1e-9  # height over radius standing for the table's disc of no height: changes the turn by 1e-16
 
@@ -49,20 +49,20 @@ def test_vanishing_spin_has_its_own_angle_of_turn_and_the_planar_times(
     assert planar.minimum_tilt == 0.0
     slow = 1e-18 * steady_wobble_rate(cylinder, fraction * cylinder.alpha)
     vanishing = free_response(cylinder, release(cylinder, fraction, slow))
-    # the correction goes with the minimum tilt over the maximum, 1e-18
+    # the correction is proportional to the minimum tilt over the maximum, 1e-18
     assert vanishing.angle_of_turn == pytest.approx(limiting_angle_of_turn(cylinder), rel=ROUNDING)
     assert vanishing.period == pytest.approx(planar.period, rel=ROUNDING)
-    # centrifugal energy L^2/(2 J theta^2) takes up all of it
+    # the centrifugal energy L^2/(2 J theta^2) equals all of it
     inertia = body_of(cylinder, 9.81).J
     expected = vanishing.angular_momentum / math.sqrt(2.0 * inertia * vanishing.energy)
     assert vanishing.minimum_tilt == pytest.approx(expected, rel=ROUNDING)
 
 
 @pytest.mark.parametrize("spin", [1e-300, 1e-160, 1e-20, 1e-15])
-def test_any_small_spin_is_the_limit(spin: float) -> None:
+def test_any_small_spin_turns_by_the_limiting_angle(spin: float) -> None:
     response = free_response(PIER, release(PIER, 0.5, spin))
     assert response.angle_of_turn == pytest.approx(limiting_angle_of_turn(PIER), rel=ROUNDING)
-    # the turning tilt goes with the spin down to the smallest of numbers
+    # the turning tilt is proportional to the spin down to the smallest double
     at_one = free_response(PIER, release(PIER, 0.5, 1e-12)).minimum_tilt / 1e-12
     assert response.minimum_tilt == pytest.approx(
         at_one * spin, rel=1e-12, abs=0.0
@@ -84,7 +84,7 @@ def test_four_times_the_size_takes_twice_the_time_to_the_last_bit(tan_alpha: flo
         assert period(large, 0.4 * large.alpha) == 2.0 * period(small, 0.4 * small.alpha)
 
 
-def test_mirror_image() -> None:
+def test_a_mirrored_release_turns_the_other_way() -> None:
     left, right = (free_response(PIER, release(PIER, 0.5, spin)) for spin in (-0.3, 0.3))
     assert left.angle_of_turn == -right.angle_of_turn
     assert left.angular_momentum == -right.angular_momentum
@@ -127,7 +127,7 @@ def test_a_release_that_overturns_has_no_next_maximum(fraction: float, tilt_rate
 @pytest.mark.parametrize("tan_alpha", SLENDERNESS)
 @pytest.mark.parametrize("spin", [1e-9, 0.1, 0.5])
 @pytest.mark.parametrize("sense", [-1.0, 1.0])
-def test_overturning_begins_where_the_energy_passes_the_barrier(
+def test_overturning_begins_where_the_energy_exceeds_the_barrier(
     tan_alpha: float, spin: float, sense: float
 ) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
@@ -163,7 +163,7 @@ def test_overturning_begins_where_the_energy_passes_the_barrier(
 @pytest.mark.parametrize(
     "function", [planar_quarter_period, rocking_period, steady_wobble_rate, wobbling_period]
 )
-def test_over_an_array_of_tilts(function) -> None:  # type: ignore[no-untyped-def]
+def test_periods_of_an_array_are_those_of_its_tilts(function) -> None:  # type: ignore[no-untyped-def]
     tilts = np.array([[0.1, 0.5], [0.9, 1.0 - 1e-9]]) * PIER.alpha
     values = function(PIER, tilts)
     assert values.shape == (2, 2)
@@ -181,7 +181,7 @@ def test_over_an_array_of_tilts(function) -> None:  # type: ignore[no-untyped-de
     "function", [planar_quarter_period, rocking_period, steady_wobble_rate, wobbling_period]
 )
 @pytest.mark.parametrize("tilt", [0.0, -0.1, 0.2, math.nan, [0.1, 0.3]])
-def test_tilt_is_checked(function, tilt) -> None:  # type: ignore[no-untyped-def]
+def test_a_tilt_outside_its_range_is_refused(function, tilt) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(ValueError, match="tilt must be above 0 and below alpha"):
         function(PIER, tilt)
     with pytest.raises(ValueError, match="tilt above 0"):
@@ -197,7 +197,7 @@ def test_steady_wobble_is_where_the_turning_tilts_meet(tan_alpha: float) -> None
     assert steady.minimum_tilt == pytest.approx(tilt, rel=ROUNDING)
     assert steady.maximum_tilt == pytest.approx(tilt, rel=ROUNDING)
     assert steady.angle_of_turn == pytest.approx(rate * steady.period, rel=ROUNDING)
-    for change in (-1e-7, 1e-7):  # first order: period and turn go with the mean tilt
+    for change in (-1e-7, 1e-7):  # first order: period and turn change with the mean tilt
         near = free_response(cylinder, InitialState(tilt=tilt, rolling_rate=rate * (1.0 + change)))
         assert near.period == pytest.approx(steady.period, rel=1e-6)
         assert near.angle_of_turn == pytest.approx(steady.angle_of_turn, rel=1e-6)
@@ -227,7 +227,7 @@ def half_unit(printed: str) -> float:
 
 
 @pytest.mark.parametrize("row", table("angle_of_turn_limit.csv"), ids=lambda row: row["h_over_b"])
-def test_angle_of_turn_in_the_limit_of_vanishing_spin(row: dict[str, str]) -> None:
+def test_angle_of_turn_of_vanishing_spin_is_its_closed_form(row: dict[str, str]) -> None:
     cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * max(float(row["h_over_b"]), FLATTEST))
     expected = pytest.approx(float(row["turn_deg"]), rel=0, abs=FOUR_DECIMALS)
     assert math.degrees(cylinder.alpha) == pytest.approx(float(row["alpha_deg"]), rel=0, abs=1e-3)
@@ -237,7 +237,7 @@ def test_angle_of_turn_in_the_limit_of_vanishing_spin(row: dict[str, str]) -> No
 
 
 @pytest.mark.parametrize("alpha", [0.1, 0.2, 0.3])
-def test_planar_quarter_period(alpha: float) -> None:
+def test_planar_quarter_period_is_the_quadrature(alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=math.tan(alpha))
     p = math.sqrt(body_of(cylinder, 9.81).p2)
     rows = table("planar_quarter_period.csv")

@@ -46,7 +46,7 @@ def quadrature(cylinder: Cylinder, initial: InitialState, gravity: float) -> Ref
             return g * (b * s + h * c)
 
         def at(theta: mp.mpf) -> tuple[mp.mpf, mp.mpf]:
-            """Return B and V of a tilt: sine and cosine take longer than all the rest."""
+            """B and V of a tilt, from sine and cosine computed once, as they take longest."""
             c, s = mp.cos_sin(theta)
             return B(s, c), V(s, c)
 
@@ -94,7 +94,8 @@ def quadrature(cylinder: Cylinder, initial: InitialState, gravity: float) -> Ref
 
 
 def root(f: Callable[[mp.mpf], mp.mpf], lower: mp.mpf, upper: mp.mpf) -> mp.mpf:
-    """Return the root between two points of different sign: on a log scale first, they may be far apart."""
+    """Root between two points of different sign, by bisection in the logarithm first, as they may be far
+    apart."""
     below = f(lower) > 0
     assert (f(upper) > 0) != below
     for _ in range(24):
@@ -106,20 +107,20 @@ def root(f: Callable[[mp.mpf], mp.mpf], lower: mp.mpf, upper: mp.mpf) -> mp.mpf:
 
 
 def next_root(f: Callable[[mp.mpf], mp.mpf], start: mp.mpf, end: mp.mpf) -> mp.mpf:
-    """Return the first root beyond `start`, where `f` is positive."""
+    """First root beyond `start`, where `f` is positive."""
     points = [start * (end / start) ** (mp.mpf(k) / 200) for k in range(201)]
     beyond = next(k for k, point in enumerate(points) if k and f(point) < 0)
     return root(f, points[beyond - 1], points[beyond])
 
 
 def drawn() -> Iterator[Any]:
-    """Cylinders, releases and gravities, evenly in logarithms where they span decades."""
+    """Random cylinders, releases and gravities, uniform in the logarithm where they span decades."""
     for kind, seeds in (("maximum", range(16)), ("minimum", range(100, 106)), ("between", range(200, 206))):
         for seed in seeds:
             random = np.random.default_rng(seed)
             size, tan_alpha = 10.0 ** random.uniform((-3.0, math.log10(0.05)), (3.0, math.log10(5.0)))
             cylinder, gravity = Cylinder(semidiagonal=size, tan_alpha=tan_alpha), random.uniform(0.1, 30.0)
-            near = seed % 4 == 0  # the steady wobble, or a turning point
+            near = seed % 4 == 0  # near the steady wobble, or near a turning point
             highest = 0.4 if kind != "maximum" else 0.6 if near else 0.95
             tilt = random.uniform(0.01, highest) * cylinder.alpha
             rate = steady_wobble_rate(cylinder, tilt, gravity=gravity)
@@ -160,7 +161,7 @@ def drawn() -> Iterator[Any]:
 
 
 @pytest.mark.parametrize(("cylinder", "initial", "gravity"), list(drawn()))
-def test_a_release_is_that_of_the_printed_energies(
+def test_a_release_turns_as_the_quadrature_of_the_printed_energies(
     cylinder: Cylinder, initial: InitialState, gravity: float
 ) -> None:
     expected = quadrature(cylinder, initial, gravity)

@@ -1,4 +1,4 @@
-"""Exact solutions with a tendon, against energies from places and springs in space and against motions."""
+"""Exact solutions with a tendon, against energies from positions and springs in space and against motions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STILL = np.zeros(3)
 
 
 def bodies(count: int) -> list[tuple[rw.Cylinder, Tendon, Pier, float]]:
-    """Random bodies with tendons, the same as of the reference, and the tilt up to which they come back."""
+    """Random bodies with tendons, those of the reference for each, and the largest tilt below the balance."""
     random = np.random.default_rng(7)
     chosen = []
     for i in range(count):
@@ -49,10 +49,10 @@ BODIES = bodies(8)
 
 
 @pytest.mark.parametrize(("body", "tendon", "pier", "top"), BODIES)
-def test_rocking_period_is_the_integral_of_energy(
+def test_rocking_period_is_the_quadrature_of_the_energy(
     body: rw.Cylinder, tendon: Tendon, pier: Pier, top: float
 ) -> None:
-    # theta'' of a body that does not move is -V'/inertia
+    # theta'' of a body at rest is -V'/inertia
     inertia = (potential(pier, 0.1 + 1e-5) - potential(pier, 0.1 - 1e-5)) / 2e-5
     inertia /= -accelerations(pier, 0.1, 0.0, 0.0, STILL, 0.0)[0]
     for share in (0.1, 0.6, 0.95):
@@ -69,7 +69,7 @@ def test_rocking_period_is_the_integral_of_energy(
 
 
 @pytest.mark.parametrize(("body", "tendon", "pier", "top"), BODIES)
-def test_steady_wobble_balances_and_its_stability_is_the_slope_of_the_balance(
+def test_steady_wobble_balances_and_its_stability_is_the_slope(
     body: rw.Cylinder, tendon: Tendon, pier: Pier, top: float
 ) -> None:
     signs = set()
@@ -95,7 +95,7 @@ def test_steady_wobble_balances_and_its_stability_is_the_slope_of_the_balance(
 @pytest.mark.slow
 @pytest.mark.parametrize(("body", "tendon", "pier", "top"), BODIES)
 @pytest.mark.parametrize("spin", [1e-3, 0.3])
-def test_a_release_turns_as_it_is_solved(
+def test_a_release_turns_as_the_integrated_motion(
     body: rw.Cylinder, tendon: Tendon, pier: Pier, top: float, spin: float
 ) -> None:
     for share, tilt_rate in ((0.3, 0.0), (0.5, 0.3 * top)):
@@ -115,7 +115,7 @@ def test_a_release_turns_as_it_is_solved(
         )
 
 
-def test_the_turn_of_vanishing_spin_depends_on_no_tendon() -> None:
+def test_the_turn_of_vanishing_spin_is_independent_of_the_tendon() -> None:
     for body, tendon, _, top in BODIES:
         turn = reduced.angle_of_turn(body, rw.InitialState(0.5 * top, rolling_rate=1e-12), tendon=tendon)
         assert turn == pytest.approx(reduced.limiting_angle_of_turn(body), rel=1e-10)
@@ -144,7 +144,8 @@ def test_a_release_overturns_beyond_its_barrier_and_only_there() -> None:
 
 
 def test_the_momentum_of_steady_wobble_has_one_maximum_at_most() -> None:
-    """The search for the overturning barrier rests on it; without a tendon it has one."""
+    """Unimodality, on which the search for the overturning barrier rests; without a tendon the maximum
+    exists."""
     random = np.random.default_rng(3)
     for number in range(400):
         transverse = 10.0 ** random.uniform(-3.0, 1.0)

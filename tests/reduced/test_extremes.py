@@ -1,4 +1,4 @@
-"""Right where nobody looks: each extreme with its exact or limiting answer."""
+"""Extremes of each input, each with its exact or limiting answer."""
 
 import math
 
@@ -15,7 +15,7 @@ FIELDS = ["tilt", "tilt_rate", "rolling_rate", "twist", "centre_of_mass", "energ
 
 
 def simulate(*arguments, **options):
-    """Simulate, and check that the run ended well and passed on no NaN."""
+    """Run that ended well, without a NaN."""
     response = solve(*arguments, **options)
     assert response.outcome in {"stands", "overturned"}, response.facts
     for name in FIELDS:
@@ -52,7 +52,7 @@ def test_release_a_hair_below_alpha_takes_its_exact_time():
     exact = reduced.rocking_period(PIER, tilt) / 4.0
     response = simulate(PIER, initial=InitialState(tilt), duration=1.2 * exact)
     through = response.extrema[response.extrema[:, 3] < 0.0][0, 0]
-    # the tilt is a double: each rounding is 1e-7 of alpha - theta = 2e-10, and is time by 1/p
+    # the tilt is a double: one rounding is 1e-7 of alpha - theta = 2e-10, and changes the time by 1e-7/p
     assert through == pytest.approx(exact, abs=1e-5)
 
 
@@ -66,7 +66,7 @@ def test_release_above_alpha_falls_in_its_exact_time():
     beyond = tilt - PIER.alpha
     p = math.sqrt(response.source.problem.body.p2)
 
-    def slowness(u):  # theta - alpha = beyond cosh(u) takes out the root at the start
+    def slowness(u):  # theta - alpha = beyond cosh(u), which removes the root singularity at the start
         x = beyond * math.cosh(u)
         drop = 2.0 * math.sin(0.5 * (x + beyond)) * math.sin(0.5 * (x - beyond))
         return beyond * math.sinh(u) / math.sqrt(2.0 * drop) if u else 1.0
@@ -93,18 +93,18 @@ def wave(peak, turn):
 
 
 @pytest.mark.parametrize("turn", [0.0, 2.0])
-def test_a_hair_under_the_threshold_stands_and_a_hair_over_uplifts(turn):
+def test_it_stands_just_under_the_threshold_and_uplifts_just_over_it(turn):
     under = simulate(PIER, wave(THRESHOLD * (1.0 - 1e-12), turn))
     assert under.rests
     assert under.peak_tilt == 0.0
     assert math.isnan(under.uplift_time)
     over = simulate(PIER, wave(THRESHOLD * (1.0 + 1e-9), turn))
     assert over.uplift_time == pytest.approx(5.0, abs=0.01)
-    # f is at most 1e-9 g tan(alpha) for some 1e-4 s: next to nothing
+    # f is at most 1e-9 g tan(alpha) for some 1e-4 s: a negligible impulse
     assert 0.0 < over.peak_tilt < 1e-9 * PIER.alpha
 
 
-# of samples shorter than 1e-6/p the uplift may be one late, a half of which is a half percent of the pulse
+# with samples shorter than 1e-6/p the uplift may be one sample late, which takes half a percent of the pulse
 @pytest.mark.parametrize(("size", "time_step", "late"), [(6.0, 1e-5, 0.0), (1000.0, 2e-6, 0.005)])
 def test_a_pulse_far_shorter_than_the_motion_is_a_velocity_jump(size, time_step, late):
     """A pulse much shorter than 1/p is a jump of velocity: theta' = p^2 cos(alpha) dv/g."""
@@ -112,7 +112,7 @@ def test_a_pulse_far_shorter_than_the_motion_is_a_velocity_jump(size, time_step,
     acceleration[50:150, 0] = -2.0e3
     response = simulate(body, GroundMotion(acceleration, time_step), duration=1.0, sample_step=1e-3)
     p2, jump = response.source.problem.body.p2, 2.0e3 * 100 * time_step
-    # the restoring moment takes off its part in 2 ms
+    # the restoring moment reduces it within the 2 ms of the pulse
     slowed = p2 * math.sin(body.alpha) * (2e-3 - 50 * time_step)
     kick = p2 * math.cos(body.alpha) * jump / 9.81
     assert response.tilt_rate[2] == pytest.approx(kick * (1.0 - late) - slowed, rel=5e-4)
@@ -128,7 +128,7 @@ def test_a_record_of_a_million_samples_has_an_outcome():
 
 
 @pytest.mark.slow
-def test_chatter_without_a_seating_rule_ends_as_failed_and_is_masked_in_grids():
+def test_chatter_without_a_rest_threshold_fails_and_is_masked_in_grids():
     weak = wave(THRESHOLD * (1.0 + 1e-6), 2.0)
     response = reduced.simulate(Case(PIER, weak), rest_tilt=0.0)
     assert response.outcome == "failed"
@@ -154,6 +154,6 @@ def test_chatter_without_a_seating_rule_ends_as_failed_and_is_masked_in_grids():
         ({"model": "planar", "restitution": 1.1}, "restitution"),
     ],
 )
-def test_bad_options_are_named(options, words):
+def test_bad_options_are_refused_by_name(options, words):
     with pytest.raises(ValueError, match=words):
         solve(PIER, el_centro_1940(), **options)

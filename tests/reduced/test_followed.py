@@ -13,8 +13,8 @@ from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-SAME = 1e-7  # of the peak: other ends of steps of a tolerance of 1e-9, over some swings
-LEAST = 1e-8  # rad: tilts that small pass a thousand times in the time that is compared
+SAME = 1e-7  # of the peak: steps of tolerance 1e-9 that end elsewhere, over some swings
+LEAST = 1e-8  # [rad] a smaller tilt has a thousand passes in the time that is compared
 MODELS: dict[str, dict[str, Any]] = {
     "recess": {},
     "flat": {"support": "flat"},
@@ -43,7 +43,7 @@ def test_still_ground_after_the_record_changes_no_peak(model: str) -> None:
     for seed in range(30):
         given = cut(seed)
         short = solve(given, model)
-        # in a grid as well
+        # the same in a grid
         size, tan_alpha = given.cylinder.semidiagonal, given.cylinder.tan_alpha
         (peak,) = reduced.peak_tilts([size], tan_alpha, given.motion, [1.0], rtol=1e-9, **MODELS[model])[0]
         assert peak == short.peak_tilt, seed
@@ -69,7 +69,7 @@ def test_still_ground_after_the_record_changes_no_peak(model: str) -> None:
     assert later > 10
 
 
-def test_what_had_its_maximum_over_still_ground_or_stands_is_not_followed() -> None:
+def test_only_motion_without_a_later_maximum_is_followed() -> None:
     released = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.1)
     weak = Case(PIER, el_centro_1940().scaled(0.3))
     for case in (released, weak):
@@ -85,7 +85,7 @@ def test_what_had_its_maximum_over_still_ground_or_stands_is_not_followed() -> N
 def test_peaks_of_el_centro_cut_in_the_middle_of_a_swing(
     size: float, tan_alpha: float, scale: float, end: float, peak: float
 ) -> None:
-    # printed with three digits, of an integration over still ground by another code
+    # three digits from another code's integration over still ground
     cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
     trace = reduced.simulate(Case(cylinder, el_centro_1940().scaled(scale), duration=end))
     assert trace.peak_tilt / cylinder.alpha == pytest.approx(peak, abs=6e-4 * peak + 5e-5)

@@ -17,13 +17,13 @@ SQUAT = Cylinder(semidiagonal=2.0, tan_alpha=0.8, transverse_inertia=1.1, axial_
 THREE_DECIMALS = 0.5e-3  # of the published limits [deg]
 ROUNDING = 1e-14  # relative, of some ten operations
 TIGHT = {"rtol": 1e-11}
-INTEGRATED = 1e-8  # relative, what a tolerance of 1e-11 leaves in a swing
+INTEGRATED = 1e-8  # relative error of a tolerance of 1e-11 over a swing
 
 
 @pytest.mark.parametrize(
     ("ratio", "turn"), [(0.0, 182.660), (0.5, 183.202), (1.0, 183.338), (2.0, 183.435), (20.0, 183.550)]
 )
-def test_angle_of_turn_in_the_limit_of_vanishing_spin(ratio: float, turn: float) -> None:
+def test_a_frame_of_vanishing_spin_turns_by_its_closed_form(ratio: float, turn: float) -> None:
     frame = WobblingFrame(PIER, ratio)
     assert math.degrees(reduced.limiting_angle_of_turn(frame)) == pytest.approx(turn, abs=THREE_DECIMALS)
     release = InitialState(0.5 * frame.alpha, rolling_rate=1e-15)
@@ -45,8 +45,8 @@ def test_a_frame_of_boxes_is_the_planar_rocking_frame(ratio: float, tan_alpha: f
 
 @pytest.mark.parametrize("ratio", [0.0, 0.7, 20.0])
 @pytest.mark.parametrize("column", [PIER, SQUAT, Cylinder(semidiagonal=2.0, tan_alpha=2.0)])
-def test_restitution_is_that_of_impulses_on_column_and_slab(column: Cylinder, ratio: float) -> None:
-    """Both bodies by themselves: unknown are the rate after and the impulses at the new contacts."""
+def test_restitution_balances_the_impulses_on_column_and_slab(column: Cylinder, ratio: float) -> None:
+    """Impulse balance of both bodies; unknown are the rate after and the impulses at the new contacts."""
     b, h = column.base_radius, column.mass_centre_height
     inertia = body_of(column, 1.0).I1
     # column: momentum along and up, moment about its mass centre; slab: momentum along and up, velocity twice
@@ -80,18 +80,18 @@ def test_without_a_slab_a_frame_is_the_cylinder_to_the_bit(options: dict[str, ob
 
 @pytest.mark.parametrize("ratio", [0.3, 1.0, 10.0])
 @pytest.mark.parametrize("column", [PIER, SQUAT])
-def test_free_response_is_the_quadrature(column: Cylinder, ratio: float) -> None:
+def test_free_response_of_a_frame_is_the_quadrature(column: Cylinder, ratio: float) -> None:
     frame = WobblingFrame(column, ratio)
     release = InitialState(0.5 * frame.alpha, rolling_rate=0.2)
     exact = reduced.free_response(frame, release)
     trace = reduced.simulate(Case(frame, initial=release, duration=1.2 * exact.period), **TIGHT)
     assert trace.extrema[2, 0] == pytest.approx(exact.period, rel=INTEGRATED)
     assert trace.passes.angle_of_turn[0] == pytest.approx(exact.angle_of_turn, rel=INTEGRATED)
-    assert trace.passes.minimum_tilt[0] == pytest.approx(exact.minimum_tilt, rel=1e-6)  # a pass magnifies
+    assert trace.passes.minimum_tilt[0] == pytest.approx(exact.minimum_tilt, rel=1e-6)  # magnified
     assert trace.energy[0] == pytest.approx(exact.energy, rel=1e-12)
 
 
-def test_slab_moves_twice_as_far_and_the_end_that_asks_for_more_counts() -> None:
+def test_a_slab_moves_twice_as_far_and_the_larger_friction_demand_counts() -> None:
     case = Case(WobblingFrame(PIER, 0.05), el_centro_1940(vertical=True), duration=8.0)
     trace = reduced.simulate(case, sample_step=1e-3)
     b, h, theta = PIER.base_radius, PIER.mass_centre_height, trace.tilt
@@ -103,7 +103,7 @@ def test_slab_moves_twice_as_far_and_the_end_that_asks_for_more_counts() -> None
     assert held is not None
     moving = trace.tilt > 0.0
     base, top = trace.friction_needed[moving].max(), trace.top_friction_needed[moving].max()
-    assert top > 1.05 * base  # a light slab slides first
+    assert top > 1.05 * base  # a light slab slides before the base
     assert held.largest_friction_needed == pytest.approx(top, rel=1e-2)  # samples miss the maximum itself
     least = min(trace.contact_force[moving, 2].min(), trace.top_contact_force[moving, 2].min())
     assert held.least_normal_force == pytest.approx(least, abs=1e-2)

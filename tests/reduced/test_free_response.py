@@ -42,7 +42,7 @@ def test_energy_and_momentum_are_conserved_in_every_step(spin):
     "row", table("finite_release.csv"), ids=lambda row: f"{row['h_over_b']}-{row['phi_rate']}"
 )
 def test_turn_and_period_of_the_reference_table(model, row):
-    name = {"flat": "rolling"}.get(model, model)  # as the table has it
+    name = {"flat": "rolling"}.get(model, model)  # name of the model in the table
     turn, period = float(row[f"{name}_turn_deg"]), float(row[f"{name}_period_s"])
     cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * float(row["h_over_b"]))
     # the table's release: at rest in tilt, rolling rate phi_rate
@@ -58,8 +58,8 @@ def test_turn_and_period_of_the_reference_table(model, row):
         assert exact.period == pytest.approx(period, rel=0.0, abs=SIX_DECIMALS)
 
 
-def test_period_and_turn_are_as_close_as_the_readme_says():
-    """Of random cylinders, released at rest in tilt with spins from 1e-8 to that of steady wobble."""
+def test_period_and_turn_are_within_the_accuracy_of_the_readme():
+    """Random cylinders, released at rest in tilt with spins from 1e-8 to that of steady wobble."""
     rng, errors = np.random.default_rng(0), []
     for _ in range(COUNT):
         tan_alpha, size = np.exp(rng.uniform(np.log([0.05, 0.1]), np.log([5.0, 50.0])))
@@ -93,7 +93,7 @@ def test_steady_wobble_stays_at_its_tilt():
     rate = float(2.0 * math.pi / reduced.wobbling_period(PIER, tilt))
     case = Case(PIER, initial=InitialState(tilt=tilt, rolling_rate=rate), duration=30.0)
     response = reduced.simulate(case, rtol=1e-11)
-    # an error of the tolerance in the balance makes the tilt oscillate by as much
+    # a balance with an error of the tolerance makes the tilt oscillate by the same amount
     assert np.abs(response.tilt - tilt).max() <= 1e-9 * tilt
     assert response.rolling_angle[-1] == pytest.approx(30.0 * rate, rel=1e-9)
     assert len(response.passes) == 0

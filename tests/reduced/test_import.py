@@ -22,14 +22,14 @@ pytestmark = pytest.mark.slow
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
-def test_scipy_is_loaded_by_what_uses_it():
+def test_scipy_is_not_loaded_with_the_package():
     # every worker process imports this package, and few ask for an exact solution: 0.7 s of 1.6 s
     script = "import sys, rockwobble.reduced; print(*{'scipy.optimize', 'scipy.special'} & set(sys.modules))"
     process = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert process.stdout == "\n"
 
 
-# as where the installation belongs to somebody else and HOME cannot be written
+# as in an installation of another user with a HOME that cannot be written
 NOWHERE = """
 from numba.core.caching import CompileResultCacheImpl as kind
 kind._locator_classes = [each for each in kind._locator_classes if "UserProvided" in each.__name__]
@@ -52,10 +52,10 @@ def test_compiled_code_falls_back_to_a_private_folder(tmp_path):
     assert said == (
         f"rockwobble: neither the installation nor HOME can be written: compiled code is kept in {folder}\n"
     )
-    # the same name each time, and so the same folder for as long as it is ours
+    # a fixed name, so the same folder as long as only this user can write to it
     assert folder == tmp_path / f"rockwobble-compiled-{os.getuid()}"
     assert _is_ours(folder)
-    folder.chmod(0o777)  # anybody may have put code there
+    folder.chmod(0o777)  # other users may have put code there
     other, _ = start()
     assert (other.parent, other != folder) == (tmp_path, True)
 
@@ -78,11 +78,11 @@ def test_compiled_code_imports_constants_from_its_own_folder():
         ):
             assert {*names.split(", ")} <= {"RockingBody", "Tendon", "require_positive"}, (
                 file
-            )  # whose numbers a kernel is called with; no kernel checks a number
+            )  # kernels take checked numbers: no check is compiled
     assert result.OVERTURNED_TILT == bounds.OVERTURNED_TILT
 
 
-# a package of one kernel, of which the file imported last holds a coefficient
+# a package of one kernel, in which the file imported last holds a coefficient
 SOURCES = {
     "__init__.py": "",
     "entry.py": "from ._compile import kernel\nfrom .inner.scaling import scaled\n\n\n"
@@ -115,12 +115,12 @@ def called(folder: Path) -> str:
     return done.stdout
 
 
-def test_compiled_code_is_kept_by_the_content_of_its_sources(made: Path) -> None:
+def test_compiled_code_is_cached_by_the_content_of_its_sources(made: Path) -> None:
     assert [called(made), called(made)] == ["False 10.0", "True 10.0"]
     (made / "table.py").write_text("FACTOR = 3.0\n")
     os.utime(made / "table.py", (OLD, OLD))
     assert called(made) == "False 15.0"
-    (kept,) = (made / "__pycache__").glob("*.nbi")  # that of the other source is gone
+    (kept,) = (made / "__pycache__").glob("*.nbi")  # the code of the other source is gone
     for path in made.rglob("*.py"):
         os.utime(path)
     assert called(made) == "True 15.0"
@@ -128,19 +128,19 @@ def test_compiled_code_is_kept_by_the_content_of_its_sources(made: Path) -> None
 
 
 @pytest.mark.parametrize("options", [{"support": "recess"}, {"support": "flat"}, {"plane": 0.0}])
-def test_a_column_of_times_is_solved_by_what_is_compiled(options):
+def test_a_column_of_times_needs_no_new_compilation(options):
     case = Case(PIER, el_centro_1940().scaled(2.0), duration=3.0)
     problem = reduced.simulate(case, **options).source.problem
     column = np.linspace(0.0, 3.0, 20).reshape(10, 2)[:, 0]
     before = list(problem._set_up.integrate.signatures)  # of bodies with a tendon, too, where one has run
     result, _ = problem.solve(column)
     assert result.samples.tolist() == problem.solve(column.copy())[0].samples.tolist()
-    # for strided arrays it would be compiled anew, for ten seconds
+    # a strided array would take ten seconds of compilation
     assert problem._set_up.integrate.signatures == before
 
 
-def test_a_response_is_the_same_after_a_journey_and_compiles_nothing():
-    # compiled code that travels with a response would be compiled again where it arrives, for many seconds
+def test_a_pickled_response_is_the_same_and_compiles_nothing():
+    # compiled code in a pickled response would be compiled again in the other process, for many seconds
     response = reduced.simulate(Case(PIER, initial=InitialState(0.1, rolling_rate=0.1), duration=1.0))
     sent = pickle.loads(pickle.dumps(response))
     there, here = (each.source.problem for each in (sent, response))

@@ -1,4 +1,4 @@
-"""Ctrl-C while compiled code runs is a KeyboardInterrupt after it, and no end of the process."""
+"""Ctrl-C in compiled code raises KeyboardInterrupt after it, and does not kill the process."""
 
 from __future__ import annotations
 

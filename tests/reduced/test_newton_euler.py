@@ -26,7 +26,7 @@ DIGITS = 40
 
 
 def quadratic_form(body: Body, share: float, theta: Any) -> tuple[Any, Any, Any]:
-    """B, G and C of a column and its share of the slab, per unit of the mass that gravity works on.
+    """B, G and C of a column and its share of the slab, per unit of the mass in the restoring moment.
 
     The kinetic energy is A theta'^2/2 + B phi'^2/2 - G phi' tau' + C tau'^2/2, tau = phi + psi, in vectors.
     """
@@ -46,7 +46,7 @@ def momenta(body: Body, share: float, theta: Any, phi_rate: Any, tau_rate: Any) 
 
 
 class Sample(NamedTuple):
-    """A random state, as the code under test takes it."""
+    """A random state, in the variables of the code under test."""
 
     body: Body
     column: Body  # alone
@@ -73,7 +73,7 @@ def sample(seed: int, *, twisting: bool) -> Sample:
     column = body_of(cylinder, gravity)
     rate = np.sqrt(gravity / size)
     theta = random.uniform(0.01, 1.4) if seed % 4 < 2 else 10.0 ** random.uniform(-6.0, -1.0)
-    # in a near pass phi' goes with 1/theta
+    # in a near pass phi' is proportional to 1/theta
     phi_rate = random.uniform(-2.0, 2.0) * rate * min(1.0, 0.1 / theta) / min(1.0, 10.0 * theta)
     tau_rate = random.uniform(-1.0, 1.0) * rate if twisting else 0.0
     with mp.workdps(DIGITS):
@@ -94,7 +94,7 @@ def sample(seed: int, *, twisting: bool) -> Sample:
 
 
 def state_of(given: Sample) -> State:
-    """Return the state that the rounded momenta stand for."""
+    """State that the rounded momenta stand for."""
     theta = mp.mpf(given.theta)
     B, G, C = quadratic_form(given.column, given.slab.share, theta)
     tau_rate = mp.mpf(given.S) / (C - G * G / B)
@@ -119,18 +119,18 @@ def momenta_rates(given: Sample, state: State, motion: Motion) -> tuple[Any, Any
 
 
 def carried(given: Sample) -> Any:
-    """Return the mass that the base carries, over that of the column."""
+    """Mass above the base over that of the column."""
     return 1 + given.slab.share
 
 
 def resisted(given: Sample, share: float) -> Sample:
-    """Return it with a length of rolling resistance over the base radius, at both ends in a frame."""
+    """Body with a length of rolling resistance over the base radius, at both ends in a frame."""
     delta = share * given.body.b
     return given._replace(body=given.body._replace(delta=delta), column=given.column._replace(delta=delta))
 
 
 def pressed(motion: Motion) -> Any:
-    """Return the normal force on both ends of a column, over its mass."""
+    """Normal force on both ends of a column, over its mass."""
     return motion.force[2] + motion.top[2]
 
 
@@ -146,7 +146,7 @@ def assert_close(values: Sequence[float], expected: Sequence[Any], scale: Sequen
 
 
 class Scales(NamedTuple):
-    """The size of the terms in each sum; near upright phi' grows as 1/theta."""
+    """Sizes of the terms in each sum; near upright phi' grows as 1/theta."""
 
     theta: Any  # theta''
     force: Any
@@ -167,7 +167,7 @@ def scales_of(given: Sample, state: State) -> Scales:
     )
 
 
-# with a length that matters where there is rolling resistance, and contact in most of the samples
+# a length of rolling resistance large enough to matter, with contact in most of the samples
 KINDS = [
     *(pytest.param(seed, True, 0.0, id=f"recess-{seed}", marks=pytest.mark.slow) for seed in range(16)),
     *(pytest.param(seed, False, 0.0, id=f"flat-{seed}") for seed in range(100, 116)),
@@ -180,7 +180,7 @@ KINDS = [
 
 
 @pytest.mark.parametrize(("seed", "recess", "share"), KINDS)
-def test_accelerations_and_forces_of_a_random_state(seed: int, recess: bool, share: float) -> None:
+def test_accelerations_and_forces_obey_newton_and_euler(seed: int, recess: bool, share: float) -> None:
     free = sample(seed, twisting=not recess)
     given = resisted(free, share)
     body, ground, started = given.body, given.ground, (given.theta, given.omega, given.phi, given.Lambda)
@@ -222,7 +222,7 @@ def test_accelerations_and_forces_of_a_random_state(seed: int, recess: bool, sha
 
 
 @pytest.mark.parametrize("seed", range(200, 210))
-def test_planar(seed: int) -> None:
+def test_planar_acceleration_and_forces_obey_newton_and_euler(seed: int) -> None:
     given = sample(seed, twisting=False)._replace(Lambda=0.0)
     along, vertical = given.ground[0], given.ground[2]
     for direction in (1.0, -1.0):
@@ -240,7 +240,7 @@ def test_planar(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(220, 230))
-def test_energy(seed: int) -> None:
+def test_energy_is_the_sum_over_both_bodies(seed: int) -> None:
     given = sample(seed, twisting=bool(seed % 4))
     body = given.body
     with mp.workdps(DIGITS):
@@ -254,7 +254,7 @@ def test_energy(seed: int) -> None:
 
 @pytest.mark.parametrize("free_twist", [False, True])
 @pytest.mark.parametrize("seed", range(300, 305))
-def test_force_in_world_axes_over_the_weight(seed: int, free_twist: bool) -> None:
+def test_contact_force_is_in_world_axes_and_weights(seed: int, free_twist: bool) -> None:
     given = sample(seed, twisting=free_twist)
     states = np.array([[given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S], np.zeros(6)])
     quantities = derived_quantities(given.body, states, np.array([given.ground, given.ground]), free_twist)
@@ -268,13 +268,13 @@ def test_force_in_world_axes_over_the_weight(seed: int, free_twist: bool) -> Non
             tuple(size / weight for size in (scale.force, scale.force, scale.force, scale.moment)),
         )
         assert_close((quantities[0, 0],), (state.phi_rate,), (abs(state.phi_rate),))
-        # a body that stands goes with the ground
+        # a standing body moves with the ground
         standing = vector(*given.ground) / mp.mpf(given.body.g) + vector(0, 0, 1)
         assert_close(tuple(quantities[1]), (0, 0, *standing, 0), (1,) * 6)
 
 
 @pytest.mark.parametrize("seed", range(401, 411, 2))
-def test_force_on_the_slab(seed: int) -> None:
+def test_force_on_the_slab_obeys_newton(seed: int) -> None:
     given = sample(seed, twisting=True)
     states = np.array([[given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S]])
     ground = np.array([given.ground])
@@ -287,7 +287,7 @@ def test_force_on_the_slab(seed: int) -> None:
         assert_close(tuple(force[0]), tuple(motion.top / given.slab.share / given.body.g), (scale,) * 3)
 
 
-def test_a_free_slab_turns_the_less_the_wider_the_columns_stand() -> None:
+def test_the_turn_of_a_free_slab_falls_with_the_distance_of_columns() -> None:
     """On a plan of finite size the slab turns, because its columns touch it off their axes."""
     given = sample(7, twisting=False)
     share, column = mp.mpf(1), given.column

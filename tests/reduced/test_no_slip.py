@@ -21,7 +21,7 @@ from rockwobble.models import Case, Cylinder, InitialState, Trace, WobblingFrame
 PIER = Cylinder(semidiagonal=1.0, tan_alpha=0.2)
 BODIES = {"cylinder": PIER, "frame": WobblingFrame(PIER, 1.5)}
 MODELS: dict[str, dict[str, Any]] = {"recess": {}, "flat": {"support": "flat"}, "planar": {"plane": 0.3}}
-# of b/sample step: rounding of the positions, in a difference of two
+# of b/sample step: rounding of positions in a central difference
 ROUNDING = 1e-13
 RESOLVED = 0.05  # azimuth [rad] of the contact from one sample to the next
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ def rotations(trace: Trace) -> Array:
 
 
 def slip_velocities(trace: Trace) -> tuple[Array, Array]:
-    """Return the velocity of the material point at the contact (n - 4, 3) [m/s], and its error."""
+    """Velocity of the material point at the contact (n - 4, 3) [m/s], and its error."""
     step = float(trace.time[1] - trace.time[0])
     turned, centre = rotations(trace), trace.centre_of_mass
     contact = np.column_stack([trace.contact_point, np.zeros(len(trace.time))])
@@ -55,10 +55,10 @@ def slip_velocities(trace: Trace) -> tuple[Array, Array]:
 
 
 def smooth(trace: Trace) -> NDArray[np.bool_]:
-    """Return where (n - 4,) the body moves as its samples resolve, and no landing is next to it."""
+    """Mask (n - 4,) of samples in smooth motion, away from landings."""
     step = float(trace.time[1] - trace.time[0])
     landings = trace.extrema[trace.extrema[:, 1] <= 0.0, 0]
-    # what is slower than the tolerance stops at once, or begins at once: its rates jump
+    # a speed below the tolerance stops or begins at once: its rates jump
     still = trace.tilt_rate == 0.0
     stops = trace.time[1:][still[1:] != still[:-1]]
     events = np.concatenate([[trace.uplift_time], trace.rest_intervals.ravel(), landings, stops])
@@ -76,7 +76,7 @@ def cases(body: Cylinder, share: float) -> list[Case]:
     """Return a record with uplifts, and releases that wobble, stop, pivot and stand on the rim."""
     length = share * body.base_radius
     starts = [InitialState(0.9 * body.alpha, rolling_rate=2.0), InitialState(0.5 * body.alpha, 0.1, 0.3)]
-    if share:  # the couple holds it on its rim, at once or when it has stopped
+    if share:  # the couple holds it on its rim, at once or after it has stopped
         starts += [InitialState(0.97 * body.alpha, 1e-3, 0.0, 0.05), InitialState(0.97 * body.alpha)]
     releases = [Case(body, initial=start, duration=2.0, rolling_resistance=length) for start in starts]
     return [Case(body, el_centro_1940().scaled(2.0), duration=4.0, rolling_resistance=length), *releases]
@@ -100,7 +100,7 @@ def test_the_point_at_the_contact_stands_still(model: str, kind: str, share: flo
         trace = reduced.simulate(case, rtol=1e-10, sample_step=2e-4, **MODELS[model])
         checked = smooth(trace)
         velocity, error = (values[checked] for values in slip_velocities(trace))
-        # rounding of the positions, and the error of the solution where the couple turns at small tilts
+        # rounding of positions, and the error of the solution where the couple reverses at small tilts
         allowed = 2.0 * error + (ROUNDING / 2e-4 + 1e-6) * trace.case.cylinder.base_radius
         size = np.abs(velocity).max(axis=1)
         assert (size <= allowed).all(), (case, trace.time[2:-2][checked][np.argmax(size - allowed)])

@@ -1,4 +1,4 @@
-"""Where the cylinder is and what presses on it: azimuths, residual displacement, rests, the end of a record.
+"""Positions and contact forces: azimuths, residual displacement, rests, the end of a record.
 
 Each is computed from other columns of the trace, by the mechanics alone.
 """
@@ -20,7 +20,7 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SQUAT = Cylinder(semidiagonal=2.0, tan_alpha=0.8)
 UPLIFT = G * PIER.tan_alpha
 EVERY_WAY = np.radians([-179.0, -135.0, -90.0, -30.0, 0.0, 60.0, 90.0, 120.0, 180.0])
-ROUNDING = 1e-9  # relative: the same problem turned
+ROUNDING = 1e-9  # relative: the same problem rotated
 PATH = 1e-6  # relative: midpoints of steps in which the azimuth turns by up to a hundredth
 DIFFERENCES = 2e-4  # weights; second differences over 2e-3 s of a force whose rate is some weights a second
 
@@ -32,7 +32,7 @@ def turned(columns: np.ndarray, angle: float) -> np.ndarray:
 
 
 def push(time_step: float = 0.01) -> GroundMotion:
-    """Towards the east and back, of other strength each way: leaning the other way is another problem."""
+    """Push towards the east and a weaker one back, so that a tilt to the west is another problem."""
     time = np.arange(0.0, 1.2, time_step)
     east = UPLIFT * np.where(
         time < 0.4, 1.3 * np.sin(math.pi * time / 0.4), -0.6 * np.sin(math.pi * time / 0.8)
@@ -41,9 +41,9 @@ def push(time_step: float = 0.01) -> GroundMotion:
 
 
 @pytest.mark.parametrize("options", [{}, {"support": "flat"}, {"plane": 0.0}, {"plane": math.pi}], ids=str)
-@pytest.mark.parametrize("lean", [0.0, math.pi])  # along the plane of shaking, and the other way
+@pytest.mark.parametrize("lean", [0.0, math.pi])  # azimuths along the plane of shaking, in both senses
 @pytest.mark.parametrize("shaken", [True, False])
-def test_a_release_without_spin_at_any_azimuth(options: dict[str, Any], lean: float, shaken: bool) -> None:
+def test_a_release_without_spin_is_planar(options: dict[str, Any], lean: float, shaken: bool) -> None:
     def released(azimuth: float) -> Trace:
         given = options | ({"plane": options["plane"] + azimuth} if "plane" in options else {})
         start = InitialState(0.3 * PIER.alpha, tilt_rate=0.01, rolling_angle=azimuth + lean)
@@ -89,7 +89,7 @@ def outward(phi: float) -> np.ndarray:
 @pytest.mark.parametrize("model", ["recess", "flat", "planar"])
 @pytest.mark.parametrize("cut", [False, True], ids=["the record ends", "the run ends, and it falls"])
 def test_forces_after_the_end_are_those_of_still_ground(model: str, cut: bool) -> None:
-    """Newton: mass times the acceleration of the mass centre, by second differences, and the weight."""
+    """Newton's law: mass times the acceleration of the mass centre, by second differences, and the weight."""
     strong = np.array([[0.0, 0.0], [2.6, 1.1], [2.2, 1.6]]) * UPLIFT * (1.0 if cut else 0.5)
     end, h, count = 0.8, 1e-3, 7 if cut else 3
     motion = GroundMotion(np.vstack([strong, np.full((4, 2), 3.0 * UPLIFT)])[:count], 0.5 * end)
@@ -124,7 +124,7 @@ def shock(count: int, strength: float, azimuth: float, turning: float) -> np.nda
 
 
 def shocks(strength: float, turning: float) -> tuple[np.ndarray, np.ndarray]:
-    """One that comes to rest, and one that uplifts again."""
+    """Two shocks, after one of which it comes to rest, and after the other uplifts again."""
     tail = np.vstack([shock(100, 0.3, 1.0, 5.0), np.zeros((50, 3))])
     return np.vstack([shock(60, strength, 0.4, turning), tail]), np.vstack(
         [shock(80, 1.6, -2.0, 1.5), np.zeros((60, 3))]
@@ -132,7 +132,7 @@ def shocks(strength: float, turning: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize(("strength", "turning"), [(1.2, 2.0), (1.5, 4.0)])
-def test_flat_ground_keeps_place_and_twist_over_a_rest(strength: float, turning: float) -> None:
+def test_place_and_twist_on_flat_ground_are_kept_over_a_rest(strength: float, turning: float) -> None:
     first, second = shocks(strength, turning)
     both, alone = (
         reduced.simulate(Case(PIER, GroundMotion(each, 0.01)), support="flat", **REST)
@@ -146,13 +146,13 @@ def test_flat_ground_keeps_place_and_twist_over_a_rest(strength: float, turning:
     assert np.isnan(both.contact_point[stands]).all()
     np.testing.assert_array_equal(both.centre_of_mass[stands] - place, 0.0)
     np.testing.assert_array_equal(both.twist[stands], twist)
-    # what it has when the rest begins: the centre of the circle that the rim rolls on moves with b tau'
+    # displacement when the rest begins: the centre of the circle on which the rim rolls moves with b tau'
     last = int(np.flatnonzero(both.time < begin)[-1])
     rolled = both.contact_point[last] - b * outward(both.rolling_angle[last]) - place[:2]
     assert abs(both.twist[last] - twist) < 0.5 * abs(twist)
     assert math.hypot(*rolled) < 1.01 * b * abs(both.twist[last] - twist) + 1e-12
     assert math.hypot(*place[:2]) > 1e-6 * b
-    # and then it moves as from its first place
+    # after the second uplift it moves as after the first, from its new place
     count = len(second)
     later = both.centre_of_mass[-count:] - [*place[:2], 0.0]
     np.testing.assert_allclose(later, alone.centre_of_mass, atol=1e-8)

@@ -17,7 +17,7 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     [(0.9, (0.02, 0.0, 0.25)), (1.0, (0.01, 0.0, -0.25))],
     ids=["heavier", "lighter"],
 )
-def test_each_impact_takes_its_share_on_ground_that_accelerates_evenly(restitution, share):
+def test_each_impact_loses_its_share_on_evenly_accelerating_ground(restitution, share):
     ground = 9.81 * np.array(share)
     case = Case(
         PIER, GroundMotion([ground, ground], 10.0), initial=InitialState(0.25 * PIER.alpha), duration=8.0
@@ -32,8 +32,8 @@ def test_each_impact_takes_its_share_on_ground_that_accelerates_evenly(restituti
     assert potential[1:] / potential[:-1] == pytest.approx(restitution**2, rel=1e-8)
 
 
-def test_hops_shorter_than_a_step_land_where_they_must():
-    """A release at 1e-4 alpha: a hop takes the time of a step and less."""
+def test_a_hop_shorter_than_a_step_lands_at_its_exact_time():
+    """Release at 1e-4 alpha, where a hop takes the time of a step and less."""
     initial = InitialState(1e-4 * PIER.alpha)
     quarter = reduced.planar_quarter_period(PIER, initial.tilt)
     response = reduced.simulate(
@@ -47,7 +47,7 @@ def test_hops_shorter_than_a_step_land_where_they_must():
 
 
 @pytest.mark.parametrize("intensity", [5.444444, 6.111111])
-def test_planar_runs_from_chatter_into_rocking_do_not_hang(intensity):
+def test_chatter_that_grows_into_planar_rocking_ends(intensity):
     motion = el_centro_1940().scaled(intensity * 0.1 * 9.81 / el_centro_1940().peak)
     for plane in (0.0, 0.5 * math.pi):
         response = reduced.simulate(Case(Cylinder(semidiagonal=0.5, tan_alpha=0.1), motion), plane=plane)
@@ -64,14 +64,14 @@ def one_sine(amplitude, omega, cylinder, p):
 
 @pytest.mark.parametrize("row", table("one_sine_overturning.csv"), ids=lambda r: r["w_over_p"])
 def test_overturning_by_a_one_sine_pulse_without_impact(row):
-    """The slender limit: at alpha = 1e-4 what is left out is of the order alpha^2, 1e-8."""
+    """Slender limit at alpha = 1e-4, with an error of the order alpha^2 = 1e-8."""
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=math.tan(1e-4))
     amplitude, rate = float(row["a"]), float(row["w_over_p"])
     p = reduced.simulate(Case(cylinder, duration=1.0), plane=0.0).source.problem.body.p
     verdicts = []
     for factor in (1.0 - 2e-8, 1.0 + 2e-8):
         motion = one_sine(factor * amplitude, rate, cylinder, p)
-        # a difference of 1e-8 takes log(1e8)/p to become one of alpha, and log(1e4)/p to fall
+        # a difference of 1e-8 takes log(1e8)/p to grow to one of alpha, and log(1e4)/p to fall
         response = reduced.simulate(
             Case(cylinder, motion, duration=motion.duration + 50.0 / p),
             plane=0.0,
@@ -101,7 +101,7 @@ def test_planar_forces_ignore_motion_across_the_plane():
 
 
 def test_decaying_swings_match_momentum_and_quadrature():
-    """Each rises to r^2 of the height before; each half takes the exact quarter period of its tilt."""
+    """Each swing rises to r^2 of the height before; each half takes the exact quarter period of its tilt."""
     ratio = (16.0 - 25.0 * math.sin(PIER.alpha) ** 2) / (16.0 - math.sin(PIER.alpha) ** 2)
     case = Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=16.0)
     trace = reduced.simulate(case, plane=0.0, rtol=1e-12, rest_tilt=0.0, restitution="momentum")

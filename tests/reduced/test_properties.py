@@ -1,4 +1,4 @@
-"""What must not change the response, on many random problems: sampling, rests, frames, what follows the end.
+"""Invariances of the response, on many random problems: sampling, rests, frames, motion after the end.
 
 Each is told from sensitivity by perturbed copies: a problem counts only where these agree. How many count is
 tested with it.
@@ -12,8 +12,8 @@ from shaken_problems import Problem, is_firm, joined, problem, resampled
 
 from rockwobble.models import GroundMotion, Trace
 
-FIRM = 1e-4  # of the peak that perturbed copies may differ by: beyond it a problem says nothing
-SAME = 2e-3  # of the peak: the tolerance of 1e-9, amplified as that of a perturbed copy of 1e-7 may be
+FIRM = 1e-4  # largest difference of perturbed copies, of the peak: else too sensitive to compare
+SAME = 2e-3  # of the peak: a tolerance of 1e-9, amplified as a perturbation of 1e-7 may be
 
 
 def changed(x: Trace, y: Trace) -> bool:
@@ -21,8 +21,8 @@ def changed(x: Trace, y: Trace) -> bool:
 
 
 @pytest.mark.slow
-def test_coarse_samples_of_large_cylinders_are_the_same_function_of_time():
-    """Within one sample the direction of the ground may turn right round; the first motion tells."""
+def test_coarse_sampling_changes_no_response_of_large_cylinders():
+    """Within one sample the ground acceleration may reverse; the first motion shows it."""
     count = 0
     for seed in range(60):
         given = problem(
@@ -49,7 +49,7 @@ def test_coarse_samples_of_large_cylinders_are_the_same_function_of_time():
 
 
 def foreshock(given: Problem, excess: float, turning: float) -> GroundMotion:
-    """Half a sine that only just lifts, its azimuth turning, and still ground after it."""
+    """Half a sine just above uplift, its azimuth turning, and still ground after it."""
     time_step = given.motion.time_step
     share = np.linspace(0.0, 1.0, max(12, round(0.6 / time_step)))
     size = given.threshold * (1.0 + excess) * np.sin(math.pi * share)
@@ -69,7 +69,7 @@ def lifting_just_before_a_sample(given: Problem) -> GroundMotion:
 
 @pytest.mark.slow
 def test_uplift_after_a_rest_equals_a_first_uplift():
-    """Where the series of the uplift ends at a sample, the next step must not know of what was before."""
+    """Where the series of the uplift ends at a sample, the next step must be independent of the past."""
     count = 0
     for seed in range(200):
         given = problem(seed, slenderness=(0.05, 1.0), time_steps=(0.005,), models=("recess", "flat"))
@@ -83,7 +83,7 @@ def test_uplift_after_a_rest_equals_a_first_uplift():
             both = given.simulate(motion=joined(first, given.motion), **options)
             begin = int(alone.uplift_time / given.motion.time_step) + 1
             later = begin + len(first.acceleration)
-            # the times of the samples round otherwise
+            # the times of the samples are rounded differently
             assert both.tilt[later : later + 10] == pytest.approx(alone.tilt[begin : begin + 10], rel=1e-8), (
                 seed
             )
@@ -91,7 +91,7 @@ def test_uplift_after_a_rest_equals_a_first_uplift():
 
 
 def planar_at_first(given: Problem, seed: int) -> GroundMotion:
-    """The second component begins later."""
+    """Ground motion whose second component begins later."""
     acceleration = np.array(given.motion.acceleration)
     begin = (0.15 + 0.1 * (seed % 5)) * len(acceleration)
     acceleration[: int(begin), 1] = 0.0
@@ -102,7 +102,7 @@ def planar_at_first(given: Problem, seed: int) -> GroundMotion:
 
 
 @pytest.mark.slow
-def test_rotated_by_any_angle():
+def test_a_record_rotated_by_any_angle_gives_the_rotated_response():
     firm, off = 0, []
     for seed in range(100):
         given = problem(seed, models=("recess", "flat"), slenderness=(0.05, 1.0))
@@ -110,7 +110,7 @@ def test_rotated_by_any_angle():
             continue
         given = given._replace(motion=planar_at_first(given, seed))
         plain = given.simulate()
-        # where the rounding of the first part chose a side, a copy with another first part would tell nothing
+        # where rounding in the first part chose a side, a copy with another first part shows nothing
         later = slice((seed + 1) % 2, (seed + 1) % 2 + 1)
         if is_firm(given, plain, FIRM, components=later):
             firm += 1
@@ -132,7 +132,7 @@ def test_overturning_is_decided_over_still_ground():
         plain = given.simulate(duration=cut, rtol=1e-10)
         record = given.motion.acceleration[: round(cut / given.motion.time_step) + 1]
         motion = GroundMotion(record, given.motion.time_step)
-        longer = cut + 30.0 / plain.source.problem.body.p  # twice as long as a run takes to decide
+        longer = cut + 30.0 / plain.source.problem.body.p  # twice the time that a decision takes
         padded = given.simulate(motion=motion, duration=longer, rtol=1e-10)
         assert (plain.outcome == "overturned") == (padded.outcome == "overturned"), seed
         if plain.outcome == "overturned":

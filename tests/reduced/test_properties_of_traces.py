@@ -1,4 +1,4 @@
-"""What must hold within any response: turning points, passes, demands, rests; on many random problems."""
+"""Properties of any response: turning points, passes, demands, rests; on many random problems."""
 
 import dataclasses
 import itertools
@@ -13,8 +13,8 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon
 from rockwobble.models.trace import LazySample
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-SAME = 1e-8  # of the peak: another end of the last step, at an rtol of 1e-9
-DENSE = 1e-4  # s; of the samples that the extrema of the continuous solution are held against
+SAME = 1e-8  # of the peak: a last step that ends elsewhere, at an rtol of 1e-9
+DENSE = 1e-4  # [s] step of the samples that are compared with the extrema of the continuous solution
 
 
 def test_the_peak_is_no_less_than_any_sample_and_is_attained():
@@ -25,8 +25,8 @@ def test_the_peak_is_no_less_than_any_sample_and_is_attained():
             continue
         assert response.tilt.max() <= response.peak_tilt * (1.0 + 1e-12), seed
         maxima = response.extrema[response.extrema[:, 3] > 0.0, 1]
-        attained = max(*maxima, response.tilt[0])  # a run may begin while it falls
-        if not math.isnan(response.followed_until):  # and end in the middle of a swing
+        attained = max(*maxima, response.tilt[0])  # a run may begin with decreasing tilt
+        if not math.isnan(response.followed_until):  # a run may end in the middle of a swing
             longer = given.simulate(duration=response.followed_until + 1e-6)
             attained = max(attained, longer.extrema[-1, 1])
         assert response.peak_tilt == pytest.approx(attained, rel=SAME), seed
@@ -44,13 +44,13 @@ def test_every_sampled_quantity_has_a_value_at_each_time():
         sampled = {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
         assert len(sampled) > 12
         assert {len(value) for value in sampled.values()} == {len(trace.time)}, sampled.keys()
-        # what is of a tendon is known with one, at the start, too
+        # columns of a tendon have values only with a tendon, at the start, too
         assert np.isfinite(trace.elongation).all() == (tendon is not None)
         assert np.isfinite(trace.tendon_force).all() == (tendon is not None)
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_a_shaken_release_at_rest_turns_to_where_the_tilt_goes(support):
+def test_a_release_at_rest_under_shaking_rolls_towards_growing_tilt(support):
     rises = 0
     for seed in range(60):
         chance = np.random.default_rng(seed)
@@ -81,7 +81,7 @@ def test_a_near_pass_turns_to_the_side_of_the_momentum():
         given = problem(seed, models=("recess", "flat"), sizes=(2.0, 50.0), released=seed % 3 == 0)
         response = given.simulate(rest_tilt=1e-4)  # less chatter
         passes = response.passes
-        # a column lends its numbers to be read only, for which both models would be compiled once more
+        # columns are read-only views, for which numba would compile both models again
         solved, _ = response.source.problem.solve(passes.time.to_numpy(copy=True))
         maxima = response.extrema[response.extrema[:, 3] > 0.0]
         after = np.searchsorted(maxima[:, 0], passes.time)
@@ -104,7 +104,7 @@ def test_no_pass_joins_two_motions_across_a_rest():
             after = int(np.searchsorted(maxima, time))
             begin, end = maxima[after - 1], maxima[after]
             assert not ((rests > begin) & (rests < end)).any(), (seed, time)
-        # a rest between two maxima with a minimum on either side of it would have made one
+        # a pass joined across a rest would be two maxima with a minimum on either side of the rest
         minima = response.extrema[response.extrema[:, 3] < 0.0, 0]
         for begin, end in itertools.pairwise(maxima):
             rest = (rests > begin) & (rests < end)
@@ -112,7 +112,7 @@ def test_no_pass_joins_two_motions_across_a_rest():
     assert across > 2
 
 
-# 9 chatters, and its 28 thousand steps take as long to review as those of all others
+# seed 9 chatters, and its 28 thousand steps take as long to review as those of all others
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [seed for seed in range(24) if seed != 9])
 def test_demands_are_the_extrema_of_dense_samples(seed):
@@ -152,7 +152,7 @@ def test_any_rolling_rate_turns_by_its_exact_angle(tan_alpha):
 
 @pytest.mark.slow
 def test_the_default_rest_threshold_keeps_the_peaks():
-    """Of weak shaking that two tolerances give alike with it and with one a hundred times smaller."""
+    """Weak shaking whose peaks agree at two tolerances, with this threshold and a hundredth of it."""
     converged, off = 0, []
     for seed in range(50):
         given = problem(seed, sizes=(3.0, 30.0), slenderness=(0.1, 0.5), models=("recess",))
@@ -183,7 +183,7 @@ def test_impacts_under_shaking_end_and_converge():
             )
 
 
-def test_a_mirrored_problem_turns_the_other_way_to_the_bit():
+def test_a_mirrored_problem_turns_the_other_way_to_the_last_bit():
     for seed in range(20):
         given = problem(seed, models=("recess", "flat"), released=seed % 2 == 0)
         mirror = np.array([1.0, -1.0, 1.0])[: given.motion.acceleration.shape[1]]
@@ -199,7 +199,7 @@ def test_a_mirrored_problem_turns_the_other_way_to_the_bit():
         assert np.array_equal(plain.rolling_angle, -mirrored.rolling_angle, equal_nan=True)
 
 
-def test_four_times_the_size_in_twice_the_time_to_the_bit():
+def test_four_times_the_size_takes_twice_the_time_to_the_last_bit():
     for seed in range(20):
         given = problem(seed)
         large = dataclasses.replace(given.cylinder, semidiagonal=4.0 * given.cylinder.semidiagonal)

@@ -32,11 +32,11 @@ BODIES = {
     "inertias": Cylinder(semidiagonal=2.0, tan_alpha=0.4, transverse_inertia=1.2, axial_inertia=0.3),
     "frame": WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.3), 2.0),
 }
-SMALL = 1e-6  # delta over b, at which a loss is of first order to 1e-5
+SMALL = 1e-6  # delta over b, small enough that a loss is linear in it to 1e-5
 
 
 def lost_by_load(body: Body, tilt: float) -> float:
-    """Return the integral of N over the tilt from rest at `tilt` to upright, of the motion without loss.
+    """Integral of N over the tilt from rest at `tilt` to upright, of motion without loss.
 
     N is that on both ends of a column, whose mass centre has mu times the inertia of the load.
     """
@@ -56,8 +56,8 @@ def lost_by_load(body: Body, tilt: float) -> float:
 
 
 @pytest.mark.parametrize(("kind", "spin"), [*((kind, 0.0) for kind in BODIES), ("h = 2b", 1e-5)])
-def test_the_loss_of_a_swing(kind: str, spin: float) -> None:
-    """From rest; a pass of vanishing spin takes more than an impact, by the way round upright."""
+def test_rolling_resistance_loses_the_integral_of_the_normal_force(kind: str, spin: float) -> None:
+    """Swing from rest; a pass of vanishing spin loses more than an impact, by the roll around upright."""
     cylinder = BODIES[kind]
     body = body_of(cylinder, G)
     b, tilt = body.b, 0.5 * cylinder.alpha
@@ -65,7 +65,7 @@ def test_the_loss_of_a_swing(kind: str, spin: float) -> None:
     load, at_pass = 2.0 * b * lost_by_load(body, tilt) / potential, 4.0 * body.mu * b * b / body.A
     if kind == "h = 2b":
         assert (round(load, 3), round(at_pass, 3)) == (2.262, 0.608)
-    if spin:  # the speed rises by sqrt(A/J)
+    if spin:  # the pass multiplies the speed by sqrt(A/J)
         longer = quad(lambda x: math.sqrt(x * x + body.A / body.J * (1.0 - x * x)), 0.0, 1.0)[0]
         assert longer == pytest.approx(1.0577, abs=1e-4)
         at_pass *= longer
@@ -74,7 +74,7 @@ def test_the_loss_of_a_swing(kind: str, spin: float) -> None:
     trace = reduced.simulate(case, rtol=1e-12, sample_step=2e-4 / body.p)
     maxima = trace.extrema[trace.extrema[:, 3] > 0.0]
     lost = np.diff(np.interp(maxima[:2, 0], trace.time, trace.energy_lost))[0] / trace.energy[0]
-    # of first order in SMALL, and the energy lost is read off between samples at rest
+    # error of first order in SMALL, and the energy lost is read at samples at rest
     assert lost / SMALL == pytest.approx(load + at_pass, rel=2e-4 if spin else 3e-5)
 
 
@@ -131,7 +131,7 @@ def test_precession_of_a_spinning_disc_diverges_as_inverse_time_left(support: st
     case = Case(disc, initial=release, duration=0.9 * time_left, rolling_resistance=length)
     trace = reduced.simulate(case, support=support, rtol=1e-9)
     root = np.sqrt(trace.tilt) / math.sqrt(tilt)
-    # of the next order in the tilt, and of the nutation that the release leaves
+    # error of the next order in the tilt, and the nutation after the release
     assert np.abs(root - (1.0 - trace.time / time_left)).max() < 0.02
     late = trace.time > 0.5 * time_left
     slope = np.polyfit(np.log(time_left - trace.time[late]), np.log(np.abs(trace.rolling_rate[late])), 1)[0]
@@ -139,8 +139,8 @@ def test_precession_of_a_spinning_disc_diverges_as_inverse_time_left(support: st
 
 
 @pytest.mark.parametrize(("number", "level"), [(54, 2.75), (105, 9.0)])
-def test_shaking_about_the_bound_of_uplift_ends(number: int, level: float) -> None:
-    """The couple wears motion down where the ground overcomes the weight alone, or holds it at a crawl."""
+def test_shaking_between_both_uplift_bounds_ends(number: int, level: float) -> None:
+    """Rolling resistance stops a motion where the ground exceeds the weight alone, or lets it creep."""
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motion = synthetic_motions(number + 1, peak=level * G * pier.tan_alpha, seed=16)[number]
     trace = reduced.simulate(Case(pier, motion, rolling_resistance=0.03 * pier.base_radius))
@@ -151,7 +151,7 @@ def test_shaking_about_the_bound_of_uplift_ends(number: int, level: float) -> No
 @pytest.mark.parametrize(
     ("size", "slenderness", "share", "release"),
     [
-        (6.19, 0.104, 0.0573, (0.818, 0.0198, 0.0281)),  # pivots in the end
+        (6.19, 0.104, 0.0573, (0.818, 0.0198, 0.0281)),  # pivots at the end
         (1.4, 2.29, 0.0788, (0.232, 0.302, -1.09)),  # twists as its tilt vanishes
     ],
 )
@@ -180,14 +180,14 @@ def test_the_tilt_is_that_of_the_set_valued_law(row: dict[str, str]) -> None:
     trace = reduced.simulate(case, support=row["support"], rtol=1e-10, sample_step=0.5)
     exact = np.array([float(row[str(time)] or math.nan) for time in TIMES])[: len(trace.tilt) - 1]
     error = np.nanmax(np.abs(trace.tilt[1 : len(exact) + 1] - exact)) / case.cylinder.alpha
-    # of what eps adds to each turn and uplift; near passes under shaking amplify it
+    # error by eps at each reversal and uplift; near passes under shaking amplify it
     limit = 1e-5 if float(row["share"]) < 0.01 else 1e-4
     assert error < limit * (10.0 if case.motion is not None else 1.0)
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("share", [0.9, -0.9, 1.1, -1.1])
-def test_what_the_couple_holds_creeps_and_what_it_does_not_moves(support: str, share: float) -> None:
+def test_a_held_body_creeps_and_one_beyond_the_couple_moves(support: str, share: float) -> None:
     cylinder = BODIES["h = 2b"]
     length = 0.01 * cylinder.base_radius
     # the weight acts at the distance R sin(alpha - theta) from the rim

@@ -15,7 +15,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Tendon
 
 BODY = Cylinder(semidiagonal=3.0, tan_alpha=0.5)
 G = 9.81
-EXACT = 1e-11  # of the peak: thousands of steps of 1e-13
+EXACT = 1e-11  # of the peak: thousands of steps of tolerance 1e-13
 
 Samples = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ def test_circling_ground_slides_at_constant_speed() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_slide_turns_mirrors_and_scales_with_its_ground(seed: int) -> None:
+def test_rotated_mirrored_and_scaled_ground_gives_the_same_slide(seed: int) -> None:
     samples, friction = shaking(seed)
     trace = slide(samples, 0.02, friction)
     peak = trace.peak_displacement
@@ -66,7 +66,7 @@ def test_slide_turns_mirrors_and_scales_with_its_ground(seed: int) -> None:
     np.testing.assert_allclose(slide(finer, 0.01, friction).displacement[:49:2], place, atol=1e-9 * peak)
 
 
-def test_peak_is_that_of_the_motion_between_samples() -> None:
+def test_peak_displacement_may_lie_between_samples() -> None:
     for seed in range(8):
         samples, friction = shaking(seed)
         case = Case(BODY, GroundMotion(samples, 0.02), friction=friction)
@@ -75,19 +75,19 @@ def test_peak_is_that_of_the_motion_between_samples() -> None:
         assert away * (1.0 - 1e-12) <= dense.peak_displacement <= away * (1.0 + 1e-6), seed
 
 
-def test_two_hundred_slides_end_where_plain_steps_in_time_end() -> None:
+def test_random_slides_match_small_time_steps() -> None:
     for seed, *place in np.loadtxt(TABLE, delimiter=",", skiprows=1, usecols=(0, 1, 2)):
         samples, friction = shaking(int(seed))
         trace = slide(samples, 0.02, friction)
         off = np.abs(trace.displacement[24] - place).max()
-        assert off < 1e-10 * trace.peak_displacement, f"{seed}"  # of starts at a root
+        assert off < 1e-10 * trace.peak_displacement, f"{seed}"  # error of starts at a root
 
 
 def start_in_polar(force: Samples, slope: Samples, n: Samples, times: Samples) -> Samples:
     """Speed, direction and path of a start from rest at t = 0, by steps in log t: (n, 3)."""
     size, cross = math.hypot(*force), force[0] * slope[1] - force[1] * slope[0]
     over, rate = size - n[0], force @ slope / size - n[1]
-    begin = times[0] * (1e-6 if over else 1e-2)  # from a root the direction is soon that of the force
+    begin = times[0] * (1e-6 if over else 1e-2)  # from a root of f the direction soon is that of the force
     speed = over * begin + 0.5 * rate * begin**2 + cross**2 / size**3 * begin**3 / 6.0
 
     def rates(log: float, y: Samples) -> list[float]:
@@ -103,7 +103,7 @@ def start_in_polar(force: Samples, slope: Samples, n: Samples, times: Samples) -
     return solve_ivp(rates, span, state, "LSODA", np.log(times), rtol=1e-13, atol=bounds).y.T
 
 
-# in a part of the time of |f|/|f'| = 1 s: terms are left out of third order in it, from a root of second
+# time over |f|/|f'| = 1 s: terms of third order are left out, from a root of second order
 @pytest.mark.parametrize(
     ("force", "slope", "off"),
     [
@@ -127,7 +127,7 @@ def test_slide_starts_by_its_equations_of_speed_and_direction(
     np.testing.assert_allclose(trace.slip[at], path, rtol=1e-6)
 
 
-def test_without_friction_the_ground_moves_below() -> None:
+def test_without_friction_the_body_stays_while_the_ground_moves() -> None:
     samples, _ = shaking(7)
     samples[0] = 0.0
     trace = slide(samples[:, :2], 0.02, 0.0)
@@ -157,7 +157,7 @@ def test_vertical_shaking_counts_as_gravity_until_it_lifts() -> None:
     assert math.isnan(reduced.peak_displacements([friction], GroundMotion(samples, 0.02), [1.0])[0, 0])
 
 
-def test_batch_has_the_peaks_of_single_slides() -> None:
+def test_peaks_of_a_batch_are_those_of_single_slides() -> None:
     samples, _ = shaking(5)
     motion, frictions, scales = GroundMotion(samples, 0.02), [0.0, 0.1, 0.3, 2.0], [0.0, 0.7, 1.0]
     peaks = reduced.peak_displacements(frictions, motion, scales)

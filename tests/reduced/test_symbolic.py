@@ -32,7 +32,7 @@ QUARTER = {tilt: sp.Symbol("quarter_tilt"), azimuth: sp.Symbol("quarter_azimuth"
 
 
 def energies(share: Any) -> tuple[Any, Any]:
-    """Return the kinetic and the potential energy per unit mass, from (8), (10), (13)-(15) and (17).
+    """Kinetic and potential energy per unit mass, from (8), (10), (13)-(15) and (17).
 
     Those of a slab of `share` masses are added, at the highest point of the top.
     """
@@ -43,12 +43,12 @@ def energies(share: Any) -> tuple[Any, Any]:
     base = b * (1 - sp.cos(theta)) * e_x + b * sp.sin(theta) * e_z  # (10)
     centre = sp.Matrix(ground) + base + h * rotation[:, 2]  # (11)
     velocity = centre.diff(time)
-    # the circle that the top rolls on keeps its place on the slab, as that at the base does on the ground
+    # the circle on which the top rolls is fixed to the slab, as that of the base is to the ground
     highest = base + 2 * h * rotation[:, 2] - b * (sp.cos(theta) * e_x - sp.sin(theta) * e_z)
     slab = sp.Matrix(ground) + highest + b * e_x
     slab_velocity = slab.diff(time)
     spin = rotation.T * rotation.diff(time)  # skew: the angular velocity (14) in body axes
-    # short before they are squared
+    # simplified before they are squared
     angular_velocity = sp.Matrix([reduced(each, phi, theta) for each in (spin[2, 1], spin[0, 2], spin[1, 0])])
     translation = velocity.dot(velocity) + share * slab_velocity.dot(slab_velocity)
     kinetic = (translation + angular_velocity.dot(sp.diag(I1, I1, I2) * angular_velocity)) / 2
@@ -56,7 +56,7 @@ def energies(share: Any) -> tuple[Any, Any]:
 
 
 def reduced(expression: Any, *angles: Any) -> Any:
-    """Return a polynomial in sines and cosines with at most the first power of each cosine."""
+    """Polynomial in sines and cosines with at most the first power of each cosine."""
     for angle in angles:
         s, c = sp.sin(angle), sp.cos(angle)
         expression = sp.rem(sp.expand(expression), s**2 + c**2 - 1, c)
@@ -64,7 +64,7 @@ def reduced(expression: Any, *angles: Any) -> Any:
 
 
 def plain(expression: Any) -> Any:
-    """Replace the functions of time by symbols; the ground's own place and velocity drop out."""
+    """Expression with symbols in place of functions of time; position and velocity of the ground cancel."""
     functions = (theta, phi, *ground)
     for order, symbols in (
         (2, (theta_2, phi_2, a_x, a_y, a_z)),
@@ -91,7 +91,7 @@ def paper(share: Any) -> tuple[Any, Any]:
 
 @pytest.fixture(scope="module")
 def motion(paper: tuple[Any, Any]) -> tuple[Any, Any]:
-    """Return what Lagrange's equations (12) set to zero, for theta and for phi."""
+    """Left-hand sides of Lagrange's equations (12), for theta and for phi."""
     function = paper[0] - paper[1]
     tilting, turning = (
         plain((function.diff(angle.diff(time)).diff(time) - function.diff(angle)).doit())
@@ -101,7 +101,7 @@ def motion(paper: tuple[Any, Any]) -> tuple[Any, Any]:
 
 
 def sin_cos(angle: Any) -> tuple[Any, Any]:
-    """Return sine and cosine of tilt, azimuth or half of one, as rational functions."""
+    """Sine and cosine of tilt, azimuth or half of one, as rational functions."""
     (symbol,) = angle.free_symbols
     x = QUARTER[symbol]
     s, c = 2 * x / (1 + x**2), (1 - x**2) / (1 + x**2)
@@ -112,7 +112,7 @@ def sin_cos(angle: Any) -> tuple[Any, Any]:
 
 
 def on_symbols(function: Any) -> Callable[..., Any]:
-    """Return a function of the code that runs on symbols."""
+    """Compiled function of the code, as a Python function of symbols."""
     original = getattr(function, "py_func", function)
     names = {
         **original.__globals__,
@@ -179,7 +179,7 @@ def constants(transverse: Any = None, axial: Any = None, share: Any = 0) -> Body
 
 
 def recess_residuals(body: Body, motion: tuple[Any, Any]) -> list[Any]:
-    """Return what the solution that the code gives leaves of Lagrange's equations."""
+    """Residuals of Lagrange's equations for the accelerations that the code returns."""
     _, tilt_acceleration, phi_rate, L_rate = on_symbols(equations.recess_rhs)(body, *STATE)
     inertia = L / phi_rate
     # L = B phi' and its rate; with x = tan(theta/4), dx = (1 + x^2)/4 dtheta
@@ -224,7 +224,7 @@ def test_recess_equations_are_lagranges(motion: tuple[Any, Any], share: Any) -> 
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [sp.Rational(101, 100), -1])
 @pytest.mark.parametrize("name", ["b", "h", "A", "J", "C", "E", "p2", "sin_alpha", "cos_alpha"])
-def test_a_changed_coefficient_is_seen(name: str, factor: Any, motion: tuple[Any, Any], share: Any) -> None:
+def test_a_wrong_coefficient_is_detected(name: str, factor: Any, motion: tuple[Any, Any], share: Any) -> None:
     body = constants(I1, I2, share)
     changed = body._replace(**{name: factor * getattr(body, name)})
     assert any(is_nonzero_somewhere(residual) for residual in recess_residuals(changed, motion))

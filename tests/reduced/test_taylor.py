@@ -15,8 +15,8 @@ from rockwobble.reduced.integration.record import ground
 from rockwobble.reduced.integration.systems import RECESS
 
 RTOL = 1e-12
-# what a step leaves out, over the largest term of each rate: the tolerance times the order, as a derivative
-# weighs the last terms by theirs, and ten for the length of the step in units of the state's own time
+# remainder of a step, over the largest term of each rate: the tolerance times the order, the factor of a
+# derivative on the last terms, and ten for the length of the step in units of the time scale of the state
 LEFT_OUT = 10.0 * 16.0 * RTOL
 
 derivative = RECESS.derivative
@@ -54,12 +54,12 @@ def test_the_series_solve_the_equations(body, y, a, slope):
     start = derivative(body, y, a)
     for share, (state, rates) in zip((0.0, 0.4, 1.0), points, strict=True):
         exact = derivative(body, state, ground(a, slope, share * taken))
-        # tilt, tilt rate, rolling angle, momentum: each held to what it is at the start or here
+        # tilt, tilt rate, rolling angle, momentum: each relative to its value at the start or here
         for rate, expected, first in zip(rates, exact, start, strict=True):
             assert rate == pytest.approx(expected, rel=LEFT_OUT, abs=LEFT_OUT * abs(first))
 
 
-def test_a_step_is_of_the_order_that_the_sample_asks_for():
+def test_a_longer_step_takes_a_higher_order():
     body = body_of(Cylinder(semidiagonal=6.0, tan_alpha=0.2), 9.81)
     a, slope = (1.0, -0.5, 0.0), (30.0, 10.0, 0.0)
 

@@ -1,4 +1,4 @@
-"""A tendon along the axis, in the recess and in a plane, against places and springs in space."""
+"""A tendon along the axis, in the recess and in a plane, against positions and springs in space."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ def apart(cylinder: rw.Cylinder, tendon: Tendon, gamma: float) -> Pier:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_equations_are_those_of_places_and_springs(seed: int) -> None:
+def test_equations_are_those_of_springs_in_space(seed: int) -> None:
     random = np.random.default_rng(seed)
     cylinder = rw.Cylinder(semidiagonal=2.0, tan_alpha=random.uniform(0.1, 0.9))
     tendon, gamma = TENDONS[seed % 3], 1.3 * (seed % 2)
     theta, omega = random.uniform(0.05, 1.0), random.uniform(-1.0, 1.0)
     phi, spin, ground = random.uniform(-3.0, 3.0), random.uniform(-2.0, 2.0), random.uniform(-5.0, 5.0, 3)
     pier, w, d = apart(cylinder, tendon, gamma), 1.0 + 2.0 * gamma, 1e-4
-    # momentum per unit of the mass that gravity moves: that of a column and twice its share of the slab
+    # momentum per unit of the mass in the restoring moment: that of a column and twice its share of the slab
     inertia, more, less = (inertia_about_the_vertical(pier, at) / w for at in (theta, theta + d, theta - d))
     body = Problem(Case(body_of(cylinder, gamma), duration=1.0, tendon=tendon)).body
     rates = recess_rhs(body, theta, omega, phi, inertia * spin, *ground)
@@ -58,7 +58,7 @@ def test_equations_are_those_of_places_and_springs(seed: int) -> None:
 
 
 @pytest.mark.parametrize("gamma", BODIES.values(), ids=BODIES)
-def test_energy_is_that_of_places_and_springs_and_is_kept(gamma: float) -> None:
+def test_energy_is_that_of_springs_in_space_and_is_conserved(gamma: float) -> None:
     tendon = TENDONS[2]
     release = rw.InitialState(0.8 * PIER.alpha, rolling_rate=0.3)
     case = rw.Case(body_of(PIER, gamma), initial=release, duration=10.0, tendon=tendon)
@@ -86,7 +86,7 @@ def test_it_uplifts_at_the_threshold_that_the_prestress_raises(gamma: float, ver
 
 
 @pytest.mark.parametrize("plane", [None, 0.4])
-def test_a_tendon_without_prestress_and_stiffness_is_none(plane: float | None) -> None:
+def test_a_tendon_without_prestress_and_stiffness_changes_nothing(plane: float | None) -> None:
     motion = rw.el_centro_1940().scaled(2.0)
     with_it, without = (
         reduced.simulate(rw.Case(PIER, motion, duration=10.0, tendon=tendon), plane=plane, rtol=1e-10)
@@ -98,14 +98,14 @@ def test_a_tendon_without_prestress_and_stiffness_is_none(plane: float | None) -
 
 @pytest.mark.parametrize("length", [0.0, 0.02])
 @pytest.mark.parametrize("seed", range(3))
-def test_a_fall_that_is_cut_short_is_a_fall(seed: int, length: float) -> None:
+def test_a_fall_cut_short_still_counts_as_overturned(seed: int, length: float) -> None:
     rng = np.random.default_rng(seed)
     tendon = Tendon(prestress=rng.uniform(0, 1), stiffness=rng.uniform(0, 6))
     scales = np.geomspace(1.5, 30.0, 10)
     motion, options = rw.el_centro_1940(vertical=True), {"tendon": tendon, "rolling_resistance": length}
     peaks = reduced.peak_tilts([PIER.semidiagonal], 0.2, motion, scales, **options)[0]
     for scale, peak in zip(scales, peaks, strict=True):
-        # the same with the exit from a fall out of reach: a pulse at the very end keeps it open
+        # the same without the early exit from a fall: a pulse at the very end keeps it open
         a = np.vstack([motion.acceleration * scale, np.zeros((500, 3)), [[1e4, 0.0, 0.0]], np.zeros((2, 3))])
         open_end = GroundMotion(a, motion.time_step, "open")
         trace = reduced.simulate(rw.Case(PIER, open_end, duration=motion.duration, **options), rtol=1e-7)
@@ -137,7 +137,7 @@ def test_forces_balance_momentum_of_column_and_slab(gamma: float) -> None:
         assert np.abs(slab).max() < 2e-4 * G
 
 
-def test_yield_is_said_at_the_tilt_at_which_it_begins() -> None:
+def test_tendon_yield_is_reported_at_its_first_tilt() -> None:
     motion = rw.el_centro_1940().scaled(2.5)
     free = reduced.simulate(rw.Case(PIER, motion, tendon=Tendon(prestress=0.2, stiffness=4.0)), rtol=1e-10)
     force = 0.2 + 0.6 * (free.peak_tendon_force - 0.2)
@@ -168,8 +168,8 @@ def test_the_verdict_at_a_balance_has_the_acceleration_of_the_model(
 
 @pytest.mark.parametrize("slab", [0.0, 1.0])
 @pytest.mark.parametrize("tan_alpha", [1e-1, 1e-3])
-def test_a_slender_column_moves_as_a_larger_one_without_a_tendon(tan_alpha: float, slab: float) -> None:
-    """Its couple is linear: the height grows by 1 + n p0/w, the slope falls by a share."""
+def test_a_slender_tied_column_moves_as_a_larger_free_one(tan_alpha: float, slab: float) -> None:
+    """Linear couple: the tendon raises the height by 1 + n p0/w and lowers the slope by a share."""
     prestress, share = 0.5, 0.4
     gaps, w = (2, 1.0 + 2.0 * slab) if slab else (1, 1.0)
     tendon = Tendon(prestress=prestress, stiffness=share * w / (gaps**2 * tan_alpha))
@@ -184,10 +184,10 @@ def test_a_slender_column_moves_as_a_larger_one_without_a_tendon(tan_alpha: floa
 
     tied, free = tilts(6.0, raised, tendon), tilts(6.0 / (1.0 - share), 1.0, None)
     assert free.max() > 0.25
-    # what is left is of the order of alpha^2, measured 0.05 to 0.16 of it
+    # error of the order of alpha^2, measured 0.05 to 0.16 of it
     assert np.abs(tied * (1.0 - share) / raised - free).max() < 0.3 * tan_alpha**2
 
 
 def test_the_constants_of_a_tied_body_begin_with_those_of_the_body() -> None:
-    """They are handed over by place."""
+    """Both are passed to the same compiled functions by position."""
     assert TiedBody._fields[: len(Body._fields)] == Body._fields

@@ -1,4 +1,4 @@
-"""Motion with a tendon, with and without rolling resistance, against an integration of its own."""
+"""Motion with a tendon, with and without rolling resistance, against a separate integration by scipy."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def model_of(case: rw.Case, plane: float | None) -> Model:
 @pytest.mark.parametrize(
     ("plane", "tan_alpha"), [(None, 0.15), (None, 0.9), (0.0, 0.15), (0.0, 0.5)], ids=str
 )
-def test_a_release(tan_alpha: float, plane: float | None, share: float, slab: float) -> None:
+def test_a_release_follows_scipy(tan_alpha: float, plane: float | None, share: float, slab: float) -> None:
     column = rw.Cylinder(semidiagonal=3.0, tan_alpha=tan_alpha)
     body = rw.WobblingFrame(column, slab) if slab else column
     spin = 0.7 if plane is None else 0.0
@@ -43,7 +43,7 @@ def test_a_release(tan_alpha: float, plane: float | None, share: float, slab: fl
     case = rw.Case(body, initial=release, duration=3.0, tendon=STEEL, rolling_resistance=length)
     trace = reduced.simulate(case, plane=plane, rtol=1e-12)
     own = model_of(case, plane).released(release.tilt, spin, trace.time)
-    # a motion that turns in a plane meets the corner of the couple, which eps rounds
+    # planar motion that reverses meets the jump of the couple, which eps rounds
     limit = 2e-7 if share and plane is not None else 1e-9
     assert np.abs(trace.tilt - own[:, 0]).max() < limit * column.alpha
     if plane is None:
@@ -58,7 +58,7 @@ def test_a_release(tan_alpha: float, plane: float | None, share: float, slab: fl
 @pytest.mark.parametrize("slab", [0.0, 1.3], ids=["column", "frame"])
 @pytest.mark.parametrize("share", [0.0, 0.01], ids=["lossless", "resisted"])
 @pytest.mark.parametrize("plane", [None, 0.4], ids=["recess", "planar"])
-def test_under_a_record(plane: float | None, share: float, slab: float) -> None:
+def test_a_record_follows_scipy(plane: float | None, share: float, slab: float) -> None:
     body = rw.WobblingFrame(PIER, slab) if slab else PIER
     motion = rw.el_centro_1940(vertical=True).scaled(4.0)
     length = share * PIER.base_radius

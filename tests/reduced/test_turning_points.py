@@ -9,13 +9,13 @@ from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 SAMPLE = 0.001  # [s]
-STILL = 1e-8  # of the largest tilt rate
+STILL = 1e-8  # share of the largest tilt rate that counts as zero
 PROBLEMS = 60
 OPTIONS = {"recess": {"support": "recess"}, "flat": {"support": "flat"}, "planar": {"plane": 0.0}}
 
 
 def rough(seed: int, time_step: float) -> Case:
-    """Return a cylinder under ten seconds of noise whose samples are far apart."""
+    """Cylinder under ten seconds of noise with a coarse sample step."""
     random = np.random.default_rng(seed)
     cylinder = Cylinder(
         semidiagonal=random.choice([3.0, 6.0, 15.0, 30.0]), tan_alpha=random.uniform(0.08, 0.5)
@@ -28,7 +28,7 @@ def rough(seed: int, time_step: float) -> Case:
 @pytest.mark.slow
 @pytest.mark.parametrize("time_step", [0.05, 0.1])
 @pytest.mark.parametrize("model", OPTIONS)
-def test_listed_turning_points_are_those_of_the_samples(model: str, time_step: float) -> None:
+def test_listed_turning_points_are_those_of_dense_samples(model: str, time_step: float) -> None:
     turned = 0
     for seed in range(PROBLEMS):
         trace = reduced.simulate(rough(seed, time_step), sample_step=SAMPLE, **OPTIONS[model])
@@ -44,17 +44,17 @@ def test_listed_turning_points_are_those_of_the_samples(model: str, time_step: f
             assert np.abs(times - trace.time[turn]).min() < 2.0 * SAMPLE, (seed, trace.time[turn])
         turned += len(turns)
         result, _ = trace.source.problem.solve(times)
-        turning = tilts > 0.0  # where the base lands in a plane it has a speed
+        turning = tilts > 0.0  # at a planar landing the base has a speed
         rates = np.abs(result.samples[turning, 1])
         assert rates.max() < STILL * np.abs(trace.tilt_rate).max(), (seed, times[turning][rates.argmax()])
     assert turned > 5 * PROBLEMS
 
 
 def test_landing_and_rise_within_one_step_are_detected() -> None:
-    """In the step in which it lands it rises at both ends; not seen, it overturned."""
+    """Rising tilt at both ends of the step that contains the landing; unseen, the landing became a fall."""
     scale = 0.5 + 1.5 * 6.0 / 39.0
     (cell,) = reduced.peak_tilts([2.0], 0.1, el_centro_1940(), [scale], plane=0.3).ravel()
-    # the model in space, by other equations and another method, of what shakes along the plane
+    # the spatial model, by other equations and another method, under shaking along the plane
     motion = el_centro_1940().scaled(scale)
     push = motion.acceleration @ [math.cos(0.3), math.sin(0.3)]
     along = GroundMotion(np.column_stack([push, 0.0 * push]), motion.time_step)
@@ -65,7 +65,7 @@ def test_landing_and_rise_within_one_step_are_detected() -> None:
 
 @pytest.mark.parametrize("rolling_rate", [1e-40, 1e-20, 1e-14])
 def test_a_hop_in_one_step_does_not_end_below_upright(rolling_rate: float) -> None:
-    """Between its two turning points the tilt passes close to zero, which spin keeps it from reaching."""
+    """Between two turning points the tilt passes close to zero, which spin keeps it from reaching."""
     x = np.array([-17.1128, 0.2280, -10.5809])
     release = InitialState(tilt=1.516939e-3, tilt_rate=-5.659764e-2, rolling_rate=rolling_rate)
     cylinder = Cylinder(semidiagonal=7.566023, tan_alpha=0.2598229)

@@ -1,4 +1,4 @@
-"""Uplift: found inside the sample, started from the regular solution, whatever the acceleration does."""
+"""Uplift: its time within a sample and the regular solution after it, for any ground acceleration."""
 
 import math
 
@@ -19,7 +19,7 @@ THRESHOLD = 9.81 * 0.2
 
 
 def test_a_ramp_lifts_where_it_crosses_the_threshold():
-    """The threshold is g b/h of the mass centre, the direction that of the inertia force (26)."""
+    """Threshold g b/h of the mass centre, in the direction of the inertia force (26)."""
     ramp = np.linspace(0.0, 4.0, 41)
     decked = Cylinder.from_dimensions(base_radius=1.0, height=8.0, mass_centre_height=6.0)
     for cylinder, azimuth in ((PIER, 0.0), (PIER, 1.0), (decked, -2.5)):
@@ -62,15 +62,15 @@ SERIES = [(0.0, 0.0), (-30.0, 0.0), (3000.0, 0.0), (3000.0, 1.0), (3.0, 1.0)]
         (3.0, 1.0, 0.1),
     ],
 )
-def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump, share):
-    """Integrate from the series at a tenth of its length to its end: the same state.
+def test_the_solution_is_independent_of_the_length_of_the_series(turning, jump, share):
+    """Integration from a tenth of the length of the series to its end, which gives the state there.
 
     With rolling resistance, a share of b, it lifts against the couple.
     """
     from scipy.integrate import solve_ivp
 
     body = BODY._replace(delta=share * BODY.b)
-    # the contact next to azimuth zero: about pi its small lag would be lost in the rounding of the angle
+    # contact next to azimuth zero: about pi its small lag would be lost in the rounding of the angle
     a, slope = (-THRESHOLD * (1.0 + share) - jump, 0.0, 0.0), (-20.0, turning, 1.0)
     end = uplift.start_length(body, 1e-9, a, slope, 0.0)
     begin = 0.1 * end
@@ -85,14 +85,14 @@ def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump,
     state = [theta, omega, phi, spin_momentum(theta, rate)]
     run = solve_ivp(rates, (begin, end), state, "DOP853", rtol=1e-10, atol=1e-40)
     theta, omega, phi, rate = uplift.start(body, 0.01, a, slope, 0.0, end)
-    # The terms left out are x^3 and less of those kept, x = 1e-3 of the shortest time scale at the end; each
-    # power of t weighs by its exponent: that of the first term left out is twice that of the leading one. The
-    # couple of so small a rate is less, by eps.
+    # The terms left out are at most x^3 of the others, x = 1e-3 of the shortest time scale at the end; each
+    # power of t weighs by its exponent: the first term left out has twice that of the leading one. The couple
+    # of so small a rate is less, by eps.
     limits = (1e-4, 1e-4) if share else (3e-9, 6e-9)
     assert run.y[0, -1] == pytest.approx(theta, rel=limits[0], abs=0.0)
     assert run.y[1, -1] == pytest.approx(omega, rel=limits[1], abs=0.0)
-    # the lag is x^2 of what the ground turns meanwhile, and its own rest again a thousandth of it; after a
-    # jump it grows with the turn, and what is left is x = 1e-6 of that
+    # the lag is x^2 of the turn of the ground meanwhile, and its error a thousandth of it; after a jump it
+    # grows with the turn, with an error of x = 1e-6 of that
     turned = abs(turning) * end / abs(a[0])
     assert run.y[2, -1] == pytest.approx(
         phi, rel=0.0, abs=(1e-6 if share else 3e-7 if jump else 2e-8) * turned
@@ -115,7 +115,7 @@ def test_uplift_is_continuous_at_a_sample_time():
         assert late.peak_tilt == pytest.approx(at.peak_tilt, rel=1e-5)
 
 
-def test_a_later_uplift_takes_the_nearest_branch():
+def test_a_later_uplift_takes_the_azimuth_nearest_to_the_last():
     motion = el_centro_1940().scaled(0.8)
     response = reduced.simulate(Case(PIER, motion), rest_tilt=0.01)
     moving = ~np.isnan(response.rolling_angle)
@@ -158,7 +158,7 @@ def test_the_runge_kutta_pair_satisfies_its_order_conditions():
                 assert low @ phi == pytest.approx(1.0 / gamma, abs=1e-13)
 
 
-def test_sine_and_cosine_are_those_of_the_library():
+def test_sine_and_cosine_are_those_of_the_math_library():
     from rockwobble.reduced.trigonometry import sin_cos
 
     x = np.concatenate([np.linspace(-50.0, 50.0, 4001), 10.0 ** np.linspace(-300.0, 8.0, 2000)])
