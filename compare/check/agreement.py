@@ -102,19 +102,21 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
 def release(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt, peak and passes of a release that passes the upright position."""
     found, model = _both(subject, RELEASE, support)
-    yield _followed(subject, found, model, "tilt and azimuth of a release", 1.0, _CONTACT)
+    yield _leans(subject, found, model, "tilt and azimuth of a release", 1.0, _CONTACT)
     bound = subject.tolerance_bound(10.0, "as the model", "s, rad")
     if "passes" in subject.knows:
         columns = ["time", "minimum_tilt", "angle_of_turn"]
         yield at_most(
-            "passes of a release", _apart(*(each.passes[columns] for each in (found, model))), bound
+            "passes of a release",
+            _distance(*(each.passes[columns] for each in (found, model))),
+            bound,
         )
     if "extrema" in subject.knows:
-        off = _apart(found.extrema[:, :2], model.extrema[:, :2])
+        off = _distance(found.extrema[:, :2], model.extrema[:, :2])
         yield at_most("turning points of a release", off, bound)
 
 
-def _apart(own: ArrayLike, other: ArrayLike) -> float:
+def _distance(own: ArrayLike, other: ArrayLike) -> float:
     """Return the largest difference of two tables; NaN where they have not as many rows."""
     tables = np.asarray(own, dtype=float), np.asarray(other, dtype=float)
     return largest(tables[0] - tables[1]) if tables[0].shape == tables[1].shape else math.nan
@@ -123,19 +125,19 @@ def _apart(own: ArrayLike, other: ArrayLike) -> float:
 def frame(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt of a release of a frame: one column under a slab that can only translate."""
     both = _both(subject, FRAME_RELEASE, support)
-    yield _followed(subject, *both, "tilt and azimuth of a frame", 1.0, _CONTACT)
+    yield _leans(subject, *both, "tilt and azimuth of a frame", 1.0, _CONTACT)
 
 
 def tendon(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt of a release with a tendon: a spring between points, whose stretch follows from the tilt."""
     both = _both(subject, dataclasses.replace(RELEASE, tendon=TENDON), support)
-    yield _followed(subject, *both, "tilt and azimuth with a tendon", 1.0, _CONTACT)
+    yield _leans(subject, *both, "tilt and azimuth with a tendon", 1.0, _CONTACT)
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt after an uplift on a load that rises, as far as 1.5 times the load that lifts the pier."""
     both = _both(subject, RAMP, support, 0.05)
-    yield _followed(subject, *both, "tilt and azimuth after an uplift", 5.0, "the base tips at the threshold")
+    yield _leans(subject, *both, "tilt and azimuth after an uplift", 5.0, "the base tips at the threshold")
 
 
 def record(subject: Subject, support: str) -> Iterator[Result]:
@@ -143,7 +145,7 @@ def record(subject: Subject, support: str) -> Iterator[Result]:
     both = _both(subject, RECORD, support)
     times = 1.0 if subject.run is None else 10.0  # an engine errs at uplift, and passes magnify that
     reason = "its accuracy, and what passes make of it"
-    yield _followed(subject, *both, "tilt and azimuth under El Centro", times, reason)
+    yield _leans(subject, *both, "tilt and azimuth under El Centro", times, reason)
 
 
 def ring(subject: Subject, support: str) -> Iterator[Result]:
@@ -174,7 +176,7 @@ def trajectory(subject: Subject, support: str) -> Iterator[Result]:
             yield at_most("tilt at release", off, subject.tolerance_bound(1.0, "as stated", "alpha"))
         end = _agreement(subject, case, support, model)
         name, reason = f"tilt and azimuth up to {end:.4g} s", "as asked for"
-        yield _followed(subject, found, model, name, 1.0, reason, end)
+        yield _leans(subject, found, model, name, 1.0, reason, end)
         peaks = [float(each.tilt[each.time <= end].max()) / alpha for each in (found, model)]
         yield at_most("peak tilt", abs(peaks[0] - peaks[1]), subject.tolerance_bound(1.0, reason, "alpha"))
 
@@ -202,7 +204,7 @@ def _both(subject: Subject, case: Case, support: str, sample_step: float = 0.01)
     return found, model
 
 
-def _followed(
+def _leans(
     subject: Subject, found: Trace, model: Trace, name: str, times: float, reason: str, end: float = math.inf
 ) -> Result:
     """Compare the leans to the end of the case, or until a time: root mean square over sin(alpha)."""

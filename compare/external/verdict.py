@@ -246,7 +246,7 @@ def _join(cell: Sequence[str | float]) -> str:
 def lists_of_file(verdicts: pd.DataFrame) -> pd.DataFrame:
     """Verdicts that were stored, with their lists as tuples again."""
 
-    def restored(cell: Sequence[str | float | None]) -> tuple[str | float, ...]:
+    def with_nan(cell: Sequence[str | float | None]) -> tuple[str | float, ...]:
         return tuple(math.nan if each is None else each for each in cell)
 
-    return verdicts.assign(**{name: verdicts[name].map(restored) for name in LISTS})
+    return verdicts.assign(**{name: verdicts[name].map(with_nan) for name in LISTS})

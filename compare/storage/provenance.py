@@ -50,12 +50,12 @@ def fingerprint(value: object) -> str:
     False
     """
     digest = hashlib.sha256()
-    for kind, content in _tagged(value):
+    for kind, content in _kinds_and_bytes(value):
         digest.update(f"{kind} {len(content)}:".encode() + content)
     return digest.hexdigest()[:_DIGITS]
 
 
-def _tagged(value: object) -> Iterator[tuple[str, bytes]]:
+def _kinds_and_bytes(value: object) -> Iterator[tuple[str, bytes]]:
     """The parts of a value with their kinds: with their lengths, too, no two values have the same bytes."""
     if isinstance(value, np.generic):
         value = value.item()
@@ -82,7 +82,7 @@ def _tagged(value: object) -> Iterator[tuple[str, bytes]]:
             f"a result cannot be named by an input of type {type(value).__name__}, got {value!r}"
         )
     for part in parts:
-        yield from _tagged(part)
+        yield from _kinds_and_bytes(part)
 
 
 PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "pandas", "pyarrow", *engine_packages().values())

@@ -377,11 +377,11 @@ class Problem(Release, Record, Restraint, Body):
             friction=self.friction,
             rolling_resistance=self.rolling_resistance,
             tendon=self.tendon(cylinder, self.gravity),
-            name="free response" if motion is None else named(motion, self.scale),
+            name="free response" if motion is None else scaled_name(motion, self.scale),
         )
 
 
-def named(motion: rw.GroundMotion, scale: float) -> str:
+def scaled_name(motion: rw.GroundMotion, scale: float) -> str:
     """Name of a case: that of its ground motion, with its scale."""
     factor = scale if scale != 1.0 else None
     return written("motions.scaled", {"name": motion.name, "factor": factor}, {})

@@ -257,12 +257,12 @@ def view(
     require_runnable(case, run)
     require_motion(case.name, [rw.simulate(case)])  # before an engine runs for seconds
 
-    def compared(progress: ProgressCallback) -> View:
+    def view_of_case(progress: ProgressCallback) -> View:
         found = View.of(rw.comparison(case, runs=[run], progress=progress), case.name)
         require_motion(case.name, found.comparison.traces.values())
         return found
 
-    return Work(compared, case_lines(case), opened=opened)
+    return Work(view_of_case, case_lines(case), opened=opened)
 
 
 def _default_engine(support: str) -> str:

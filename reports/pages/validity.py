@@ -44,7 +44,7 @@ def page_of(results: Validity) -> Page:
     def said(group: str) -> list[str]:
         return [statement(each) for each in findings.of(f"limit_{group}")]
 
-    def shown(*chosen: str) -> list[str]:
+    def picture_names(*chosen: str) -> list[str]:
         return [picture.name for picture in drawn if picture.name in chosen]
 
     ranges = {
@@ -67,12 +67,12 @@ def page_of(results: Validity) -> Page:
         "contrasts": _contrasts(contrasts(tables)),
         "summary": _summary(cells(tables)),
         "tendon": structure.tendon is not None,
-        "map_pictures": shown("bias", "spread", "sensitivity"),
+        "map_pictures": picture_names("bias", "spread", "sensitivity"),
         "traces": _traces(traces(tables)),
         "early": early(tables),
         "followed": tables["following"],
-        "free_pictures": shown("free-turn", "free-period", "verification"),
-        "force_pictures": shown("need-friction", "need-contact", "need-moment", "slip"),
+        "free_pictures": picture_names("free-turn", "free-period", "verification"),
+        "force_pictures": picture_names("need-friction", "need-contact", "need-moment", "slip"),
         **_needs(needs(tables)),
         "damping": damping(tables).to_dict("records"),
         "changes": _changes(vertical(tables)),

@@ -327,16 +327,16 @@ def findings_of(tables: Tables, structure: Structure) -> Findings:
     return Findings(each for group in groups for each in group)
 
 
-def _said(key: str, level: Level = "note", /, **values: Value) -> Finding:
+def _finding(key: str, level: Level = "note", /, **values: Value) -> Finding:
     return Finding(key=f"limit_{key}", level=level, values=values)
 
 
 def _scope(structure: Structure) -> Iterator[Finding]:
     if structure.slab_mass_ratio:
-        yield _said("scope.slab", ratio=structure.slab_mass_ratio)
+        yield _finding("scope.slab", ratio=structure.slab_mass_ratio)
     if tendon := structure.tendon:
         given = {"given": tendon.prestress, "given_stiffness": tendon.stiffness}
-        yield _said("scope.tendon", **given, factor=structure.uplift)
+        yield _finding("scope.tendon", **given, factor=structure.uplift)
 
 
 def _model(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
@@ -353,28 +353,28 @@ def _model(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
     if contradicted := decided["runs_contradicted"] or beyond:
         runs = {"runs": decided["runs_contradicted"] or math.nan, "runs_all": decided["runs_all"]}
         counts = {"count": beyond or math.nan, "count_all": points}
-        yield _said("model.contradicted", "not satisfied", **runs, **counts)
+        yield _finding("model.contradicted", "not satisfied", **runs, **counts)
     else:
         key = "established" if within else "undecided"
         level: Level = "satisfied" if within else "not tested"
         counts = {"count": within, "count_all": points, "share": MARGIN}
-        yield _said(f"model.{key}", level, runs=members, **_ends(table, RECESS), **counts)
+        yield _finding(f"model.{key}", level, runs=members, **_ends(table, RECESS), **counts)
     bands: dict[str, str] = {**dict(zip(RECESSES_FIRST, RECESSES_FIRST, strict=True)), "copy": PERTURBED}
     strays: dict[str, float] = {}
     for name, method in bands.items():
         strays |= _ends(table, method, "ratio_95", f"ratio_{name}")
     if not contradicted and not all(map(math.isnan, strays.values())):
-        yield _said("model.strays", "caution", **strays, runs=members)
+        yield _finding("model.strays", "caution", **strays, runs=members)
         if not np.isfinite(table.loc[table["against"] == RECESS.model, "ratio_95_high"]).any():
-            yield _said("model.unbounded", "caution")
+            yield _finding("model.unbounded", "caution")
     # False without such recesses, and of too few records to know
     if strays[f"ratio_{RING}_largest"] > 1.0:
-        yield _said("clearance.unconservative", "caution")
+        yield _finding("clearance.unconservative", "caution")
 
 
 def _requirements(tables: Tables) -> Iterator[Finding]:
     peaks = tables["peaks"]
-    yield _said("requirement.friction", ratio=largest(peaks["friction"] / peaks["tan_alpha"]))
+    yield _finding("requirement.friction", ratio=largest(peaks["friction"] / peaks["tan_alpha"]))
     moving = peaks.dropna(subset="least_normal")
     normal, tan_alpha = moving["least_normal"], moving["tan_alpha"]
     kept, lost_from = limit_of(tan_alpha, normal > 0.0)
@@ -382,12 +382,12 @@ def _requirements(tables: Tables) -> Iterator[Finding]:
     if lost := int((normal <= 0.0).sum()):
         weakest = float(moving.loc[normal <= 0.0, "intensity"].min())
         values |= {"runs_lost": lost, "ratio": lost_from, "factor": weakest}
-    yield _said("requirement.contact_lost" if lost else "requirement.contact", **values)
-    yield _said("requirement.recess", ratio=largest(peaks["moment"]))
+    yield _finding("requirement.contact_lost" if lost else "requirement.contact", **values)
+    yield _finding("requirement.recess", ratio=largest(peaks["moment"]))
     if "tension" in peaks:
-        yield _said("requirement.tendon", ratio=largest(peaks["tension"]))
+        yield _finding("requirement.tendon", ratio=largest(peaks["tension"]))
     yield _stiffness(soft_contacts(tables))
-    yield _said("requirement.question")
+    yield _finding("requirement.question")
 
 
 def _stiffness(table: pd.DataFrame) -> Finding:
@@ -398,7 +398,7 @@ def _stiffness(table: pd.DataFrame) -> Finding:
     held, _ = limit_of(known["time_constant"], off <= SMALL)
     stiff = table[table["time_constant"] <= held]  # none where it is NaN
     failed = stiff[stiff["failed"]]
-    return _said(
+    return _finding(
         "requirement.stiffness",
         bound=least(known.loc[known["time_constant"] == held, "softness"]),
         share=largest(off[known["time_constant"] <= held]),
@@ -417,34 +417,34 @@ def _records(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
         # nine in ten have the same peak at half the step
         converged = low["ratio_least"] >= 1.0 / (1.0 + MARGIN) and high["ratio_95_largest"] <= 1.0 + MARGIN
         key = "converged" if converged else "not_converged"
-        yield _said(f"records.{key}", "note" if converged else "caution", **_ends(table, HALVED), **high)
+        yield _finding(f"records.{key}", "note" if converged else "caution", **_ends(table, HALVED), **high)
     ring = runs["method"] == RING
     if ring.any():
         standing = runs.loc[ring & (runs["outcome"] == "stands"), "peak"]
         if passed := int((standing >= 1.0).sum()):
             most = largest(standing)
-            yield _said("records.beyond_alpha", "caution", runs=passed, runs_all=len(standing), peak=most)
+            yield _finding("records.beyond_alpha", "caution", runs=passed, runs_all=len(standing), peak=most)
         touched = runs[(runs["method"] != HALVED) & (runs["contact_time"] > 0.0)]
-        yield _said("records.touched", runs=len(touched), share=largest(touched["loss"]))
+        yield _finding("records.touched", runs=len(touched), share=largest(touched["loss"]))
     if failed := int(runs["outcome"].isin(NO_PEAK).sum()):
         open_ended = int((runs["outcome"] == "undecided").sum())
         counts = {"count": failed - open_ended, "count_undecided": open_ended}
-        yield _said("records.left_out", runs=len(runs), **counts)
+        yield _finding("records.left_out", runs=len(runs), **counts)
 
 
 def _releases(tables: Tables) -> Iterator[Finding]:
     table, engine = tables["free_response"], _confirmations(tables["verification"])
     values = {**engine, "runs_contradicted": engine["runs_contradicted"] or math.nan}
     if table["flat_turn"].isna().all():
-        yield _said("release.confirmed", **values)
+        yield _finding("release.confirmed", **values)
         return
     off = (table["flat_turn"] - table["turn"]).abs()
     turns = (table["flat_turn"] / table["turn"] - 1.0).abs()
     periods = (table["flat_period"] / table["period"] - 1.0).abs()
     alike, _ = limit_of(table["tan_alpha"], (turns <= ALIKE) & (periods <= ALIKE))
-    yield _said("release.alike", ratio=alike)
+    yield _finding("release.alike", ratio=alike)
     worst = table.iloc[int(np.nanargmax(off))]
-    yield _said(
+    yield _finding(
         "release.off",
         share_period=largest(periods),
         share_peak=max(largest(table["flat_peak"]) - 1.0, 0.0),
@@ -455,12 +455,12 @@ def _releases(tables: Tables) -> Iterator[Finding]:
         factor=float(worst["spin"]),
     )
     unsure = engine["runs_all"] - engine["runs"] - engine["runs_contradicted"]
-    yield _said("release.decided", **values, runs_open=unsure or math.nan)
+    yield _finding("release.decided", **values, runs_open=unsure or math.nan)
 
 
 def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
     free, peaks, slip = (tables[name] for name in ("free_response", "peaks", "slip"))
-    yield _said("force.friction", ratio=largest(free["friction"] / free["tan_alpha"]))
+    yield _finding("force.friction", ratio=largest(free["friction"] / free["tan_alpha"]))
     # slip is counted at the base; under a slab it shows as a tilt that errs, or as energy that ends the run
     slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | slip["outcome"].isin(NO_PEAK)
     slips_at, sticks = largest(slip.loc[slipped, "share"]), slip.loc[~slipped, "share"]
@@ -469,9 +469,9 @@ def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
     if not structure.slab_mass_ratio:  # where slip at the base is not all
         nearest = slip[slip["share"] == slips_at]
         values |= {"ratio": largest(nearest["slip"]), "share_tilt": largest(nearest["tilt_rms"])}
-    yield _said("force.slip", **values)
+    yield _finding("force.slip", **values)
     normal = free["least_normal"]
-    yield _said(
+    yield _finding(
         "force.normal",
         bound=least(peaks["least_normal"]),
         bound_free=float(normal.min()),
@@ -479,7 +479,7 @@ def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
         ratio_lost=limit_of(free["tan_alpha"], normal > 0.0)[1],
     )
     moving = peaks.dropna(subset="moment")
-    yield _said("force.moment", ratio=limit_of(moving["tan_alpha"], moving["moment"] <= SLIGHT)[0])
+    yield _finding("force.moment", ratio=limit_of(moving["tan_alpha"], moving["moment"] <= SLIGHT)[0])
 
 
 def _rings(tables: Tables) -> Iterator[Finding]:
@@ -490,14 +490,14 @@ def _rings(tables: Tables) -> Iterator[Finding]:
     free, touched = ring["motion"] == FREE, ring[ring["contact_time"] > 0.0]
     shaken = ring[~free]
     at_end = shaken.groupby("clearance")["at_end"].max()
-    yield _said(
+    yield _finding(
         "ring.place",
         ratio=float(str(at_end.idxmin())) if len(at_end) else math.nan,
         ratio_end=float(at_end.min()),
         bound=largest(shaken["twist"].abs()),
         bound_free=largest(ring.loc[free, "twist"].abs()),
     )
-    yield _said("ring.touched", runs=len(touched), runs_all=len(ring), share=largest(touched["loss"]))
+    yield _finding("ring.touched", runs=len(touched), runs_all=len(ring), share=largest(touched["loss"]))
     # the one whose peak is farthest from that of the recess model
     known = shaken[shaken["outcome"] != "failed"]
     ratio = known["peak"] / known["recess_peak"]
@@ -506,9 +506,9 @@ def _rings(tables: Tables) -> Iterator[Finding]:
     names = ("tan_alpha", "turn", "clearance", "inclination", "friction")
     given = {f"given_{name}": float(known[name].iloc[far]) for name in names}
     given["given_inclination"] = given["given_inclination"] or math.nan  # 0: they lean by alpha
-    yield _said("ring.worst", ratio=float(ratio.iloc[far]), **given)
+    yield _finding("ring.worst", ratio=float(ratio.iloc[far]), **given)
     halved = (shaken["halved_peak"] / shaken["peak"] - 1.0).abs()
-    yield _said(
+    yield _finding(
         "ring.halved",
         runs=int((halved <= SMALL).sum()),
         runs_all=int(np.isfinite(halved).sum()),

@@ -131,7 +131,7 @@ def measure_verification(
     case = release_case(tan_alpha, release, spin, _VERIFIED_PERIODS, structure=structure)
     case = replace(case, friction=_FRICTION)
     none = {"time": math.nan, "angle_of_turn": math.nan, "resolved": False}
-    for support in _modelled(structure):
+    for support in _models(structure):
         model = simulate_run(case, Run(None, support, rtol=_FREE_RTOL))
         run = simulate_run(case, Run(DEFAULT_ENGINE, support))
         first, own_first = (next(iter(each.passes.to_dict("records")), none) for each in (run, model))
@@ -228,7 +228,7 @@ def measure_records(
     shaken = partial(shaken_case, motion, tan_alpha, semidiagonal, structure=structure)
     case, stronger = shaken(intensity), shaken(intensity * (1.0 + COPY))
     runs: dict[str, tuple[Case, Run]] = {
-        **{str(model): (case, model) for model in REDUCED_MODELS if model.support in _modelled(structure)},
+        **{str(model): (case, model) for model in REDUCED_MODELS if model.support in _models(structure)},
         PERTURBED: (stronger, RECESS_MODEL),
         **{each: (case, Run(DEFAULT_ENGINE, each, time_step)) for each in _supports(structure)},
     }
@@ -245,7 +245,7 @@ def measure_records(
         }
 
 
-def _modelled(structure: Structure) -> list[Support]:
+def _models(structure: Structure) -> list[Support]:
     """Supports of which there is a reduced model of a structure."""
     return [each for each in MODELLED if structure.tendon is None or each.guided]
 
@@ -271,8 +271,8 @@ def measure_record_agreement(
     The columns are tan_alpha, semidiagonal, intensity, duration and those of `SUMMARY_COLUMNS`.
     """
     case = shaken_case(EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration, structure=structure)
-    models = {Run(None, support): simulate_run(case, Run(None, support)) for support in _modelled(structure)}
-    for support in _modelled(structure):
+    models = {Run(None, support): simulate_run(case, Run(None, support)) for support in _models(structure)}
+    for support in _models(structure):
         run = Run(DEFAULT_ENGINE, support)
         trace = simulate_run(case, run)
         for model in run.compared_with:
