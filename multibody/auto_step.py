@@ -44,7 +44,7 @@ Difference = TypeVar("Difference", float, Array)
 def common_count(times: Sequence[Array]) -> int:
     """Number of leading samples whose times are equal in all traces."""
     count = min(map(len, times))
-    # the last sample of a run that overturned stands at its own time
+    # the last sample of a run that overturned is at the end of the fall, off the grid
     near = _SAME_TIME * max(1.0, *(float(time[-1]) for time in times if len(time)))
     different = np.flatnonzero(
         np.any([np.abs(time[:count] - times[0][:count]) > near for time in times], axis=0)
@@ -53,17 +53,17 @@ def common_count(times: Sequence[Array]) -> int:
 
 
 def error_left(difference: Difference, order: float) -> Difference:
-    """Return the error of the finer of two runs, by their difference and its order in the step."""
+    """Error of the finer of two runs, from their difference and its order in the step."""
     return difference / (math.pow(2.0, order) - 1.0)
 
 
 def order_between(coarser: float, finer: float) -> float:
-    """Return the order in the step of the differences of successive halvings, both above 0."""
+    """Order in the step of the differences of successive halvings, both above 0."""
     return math.log2(coarser / finer)
 
 
 def measured_order(values: Sequence[Array]) -> float:
-    """Return the order in the step of the last three of `values`.
+    """Order in the step of the last three of `values`.
 
     NaN of fewer than three, and where two of them are equal.
     """
@@ -74,13 +74,13 @@ def measured_order(values: Sequence[Array]) -> float:
 
 
 def to_zero_step(values: Sequence[Array], order: int) -> Array:
-    """Return the limit at step zero of the last two of `values`."""
+    """Limit at step zero of the last two of `values`."""
     coarse, fine = values[-2:]
     return np.asarray(fine + error_left(fine - coarse, order))
 
 
 def linear_extrapolation(values: Sequence[Array]) -> Array:
-    """Return the limit at step zero of a straight line through all of `values`, by least squares.
+    """Limit at step zero of a straight line through all of `values`, by least squares.
 
     Scatter goes with the step, and one that is off by chance weighs little.
     """
@@ -115,7 +115,7 @@ class Closeness:
 
 
 def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
-    """Return the closeness of two traces in tilt, by their samples."""
+    """Closeness of two traces in tilt, by their common samples."""
     count = common_count([coarse.time, fine.time])
     distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
     beyond = np.flatnonzero(distance > AGREEMENT * alpha)
@@ -132,7 +132,7 @@ def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
 
 
 def unknown_from(trace: Trace) -> tuple[float, str]:
-    """Return the time after which the error of a trace cannot be estimated [s], and the code of the reason.
+    """Time after which the error of a trace cannot be estimated [s], and the code of the reason.
 
     A pass nearer to upright than contact resolves is left to chance; a base that comes down to less lands,
     with every step alike, where the motion may go on: after the last maximum before that the runs agree, and
@@ -146,19 +146,19 @@ def unknown_from(trace: Trace) -> tuple[float, str]:
 
 
 def _closes(trace: Trace) -> bool:
-    """Whether a trace goes through upright in one plane, each time by an impact of momentum."""
+    """Whether a trace passes upright in one plane, each time by an impact of momentum."""
     passes = trace.passes
     return trace.mode == ROCKS_IN_PLANE and len(passes) > 0 and bool(passes["resolved"].all())
 
 
 def shares(steps: Sequence[float]) -> list[float]:
-    """Return the fractions of the whole work that are done before each step and after the last."""
+    """Fractions of the whole work done before each step and after the last."""
     work = np.cumsum([0.0, *(1.0 / step for step in steps)])
     return [float(value) for value in work / work[-1]]
 
 
 def part_of(progress: Progress | None, start: float, end: float) -> Progress:
-    """Return a callback for one run, which is the work from `start` to `end` of the whole."""
+    """Progress callback for one run, which is the work from `start` to `end` of the whole."""
 
     def tell(fraction: float) -> None:
         if progress is not None:
@@ -171,7 +171,7 @@ AUTO = "auto"
 COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth
 SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding and cost grow, not accuracy
 STEP_TOLERANCE = 1e-3  # tilt change over alpha; a tenth of the difference at which traces diverge
-_PUT_OFF = 1.05  # a divergence later by less is no gain
+_PUT_OFF = 1.05  # a divergence later by a smaller factor is no gain
 _CLOSER = 0.9  # a difference reduced by less is no gain
 _ORDERS = 0.5, 1.0  # least and largest order that an estimate relies on
 
@@ -200,8 +200,8 @@ def find_step(
     while steps[-1] > SMALLEST * unit_time * 1.5:
         steps.append(0.5 * steps[-1])
     parts = shares(steps)
-    best, coarser = None, None  # the run to keep, and the last one
-    entries: list[Closeness] = []  # one for the run to keep and each before it
+    best, coarser = None, None  # the best run so far, and the run before the last
+    entries: list[Closeness] = []  # closeness of each run up to the best
     verdict, spent = "still_changes", 0.0
     for index, step in enumerate(steps):
         run = attempt(step, part_of(progress, parts[index], parts[index + 1]))
@@ -228,7 +228,7 @@ def find_step(
 
 
 def _judge(distances: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
-    """Return why to stop ("": tilt has settled, None: go on), and whether the last run is better."""
+    """Reason to stop ("": tilt has settled, None: continue), and whether the last run is better."""
     last = distances[-1]
     close = last.difference <= tolerance
     if math.isinf(last.divergence) and close:
@@ -239,7 +239,7 @@ def _judge(distances: list[Closeness], tolerance: float) -> tuple[str | None, bo
     if last.divergence > before.divergence * _PUT_OFF:
         return None, True
     if math.isfinite(last.divergence):
-        # the one before diverged later: the smaller step is the worse one
+        # the run before diverged later, so the smaller step is the worse one
         gain = last.divergence >= before.divergence / _PUT_OFF
         return ("" if close and gain else "no_later"), gain
     if last.difference > _CLOSER * before.difference:
@@ -248,7 +248,7 @@ def _judge(distances: list[Closeness], tolerance: float) -> tuple[str | None, bo
 
 
 def _estimate(distances: list[Closeness]) -> tuple[float, float]:
-    """Return Richardson's estimate of the error that is left [rad], and the order that it rests on."""
+    """Richardson's estimate of the remaining error [rad], and the order on which it rests."""
     last = distances[-1]
     order = 1.0
     if len(distances) > 1 and last.difference > 0.0 and distances[-2].until >= last.until / _PUT_OFF:
@@ -258,7 +258,7 @@ def _estimate(distances: list[Closeness]) -> tuple[float, float]:
 
 
 def _report(run: Trace, distances: list[Closeness], verdict: str, alpha: float) -> Trace:
-    """The run with what halving found; `verdict` says why it has not settled, and is empty if it has."""
+    """Run with the result of the halving; `verdict` says why it has not settled, and is empty if it has."""
     if not distances:
         fact = Diagnostic(code="unsettled", detail=verdict)
         return run if run.outcome == "failed" else replace(run, facts=(*run.facts, fact))

@@ -37,7 +37,7 @@ class StepMeans:
             self._samples[:, : motion.acceleration.shape[1]] = motion.acceleration / scale.acceleration
             self._spacing = motion.time_step / scale.time
         shaken = np.flatnonzero(self._samples.any(axis=1))
-        # [s] from which on the ground keeps still: the last sample, or the first of the last zeros
+        # [s] time from which the ground is still: the last sample, or the first of the last zeros
         self.still_from = self._spacing * min(shaken[-1] + 1 if len(shaken) else 0, len(self._samples) - 1)
         areas = 0.5 * self._spacing * (self._samples[1:] + self._samples[:-1])
         self._velocity: Array = np.vstack([np.zeros(3), np.cumsum(areas, axis=0)])
@@ -58,7 +58,7 @@ class StepMeans:
         return np.asarray((velocity[:, 1:] - velocity[:, :-1]) / self._step).T
 
     def stop(self, end: float, step: int, centre: float = 0.0) -> Array:
-        """Return the mean of a step that takes the ground back to its velocity at `end` [s], (3,) [m/s^2].
+        """Mean of the step that returns the ground to its velocity at `end` [s], (3,) [m/s^2].
 
         The step before it held the mean of a time that goes beyond the end. Where a record goes on there, and
         the ground shall keep still, this takes that part back.
@@ -69,7 +69,7 @@ class StepMeans:
     def ground_velocity(self, time: Array) -> Array:
         """Return the integral of the acceleration up to `time` (n,), shape (n, 3) [m/s]."""
         inside = np.maximum(time, 0.0)
-        # a time that rounding puts before its sample belongs to it
+        # rounding may put the time of a sample just before it
         index = np.minimum((inside / self._spacing + 1e-9).astype(np.intp), len(self._samples) - 1)
         past = inside - index * self._spacing
         # component by component, which is how the steps take it

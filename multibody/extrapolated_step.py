@@ -52,7 +52,7 @@ _RUNS = 3
 _FIRST_OR_SECOND = 1.5  # order between first and second
 _SAMPLED = ("tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 _LATE = ("rolling_rate", "energy", "energy_error", "energy_lost")
-_OF_NO_ACCOUNT = 1e-6  # difference over alpha at which orders mix and do not matter
+_OF_NO_ACCOUNT = 1e-6  # difference over alpha below which mixed orders do not matter
 _ONE_TURN = math.pi  # [rad] two rolling angles further apart went past upright on different sides
 
 
@@ -73,7 +73,7 @@ def require_finest(finest: float, unit_time: float) -> None:
 
 
 def extrapolate(attempt: Attempt, finest: float, alpha: float, progress: Progress | None) -> Trace:
-    """Return the trace that runs at three steps tend to, as far as they agree.
+    """Limit of runs at three steps, as far as they agree.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def extrapolate(attempt: Attempt, finest: float, alpha: float, progress: Progres
 
 
 def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
-    """Return the limit of three runs, the coarsest first, each at half the step of the one before."""
+    """Limit of three runs, the coarsest first, each at half the step of the one before."""
     finest = runs[-1]
     if finest.outcome == "failed":
         return finest
@@ -133,10 +133,10 @@ def _with_facts(run: Trace, *facts: Diagnostic) -> Trace:
 
 
 def _merge(pair: Sequence[Trace], order: int, good: int) -> Trace:
-    """Return the finer run with all that can be extrapolated, in its first `good` samples."""
+    """Finer run with every quantity extrapolated in its first `good` samples."""
     fine = pair[-1]
     whole = good == len(fine.time)
-    # a tilt is never negative, and rolling angles on two sides of upright have no limit between them
+    # a tilt is never negative, and rolling angles on two sides of upright have no common limit
     apart = np.abs(pair[0].rolling_angle[:good] - fine.rolling_angle[:good]) > _ONE_TURN
     kept = (to_zero_step([run.tilt[:good] for run in pair], order) < 0.0) | apart
 
@@ -180,13 +180,13 @@ def _limit(values: Sequence[Array], order: int) -> float:
 
 
 def _one_branch(angles: Sequence[Array]) -> list[Array]:
-    """Return two angles, each row of the coarser in the turn in which it is next to the finer."""
+    """The two angles, each row of the coarser shifted by whole turns to be nearest to the finer."""
     coarse, fine = angles
     return [coarse - 2.0 * math.pi * np.round((coarse - fine) / (2.0 * math.pi)), fine]
 
 
 def _rows(tables: Sequence[Array], order: int) -> Array:
-    """Return the limit of turning points with the same rows, else the last of them."""
+    """Limit of turning points with the same rows, else those of the finest run."""
     coarse, fine = tables
     if len(coarse) != len(fine) or (coarse[:, 3] != fine[:, 3]).any():
         return fine

@@ -1,4 +1,4 @@
-"""Guard of an engine run: bounds that hold at every step, and its energy, whatever the engine itself says.
+"""Guard of an engine run: bounds that hold at every step, and its energy, independent of the engine.
 
 An engine that diverges does not always say so: explicit contact gains energy silently. Each check
 returns the first step that breaks it and why; a run is cut there and its outcome is "failed".
@@ -34,32 +34,32 @@ from .protocol import Steps, Wall
 from .scene import Array, Body
 
 ENERGY_GAIN = 0.02  # share of the largest energy of the motion so far
-# least energy, over that at balance: a base that is just about to open has no
-# energy yet, and what its contact gains or loses there is noise
+# least energy, over that at balance: a base about to open has no energy yet, and gains or losses in its
+# contact are noise
 _LEAST_ENERGY = 0.05
 PENETRATION = 0.01  # depth over b
 GUIDE_TWIST = 0.02  # [rad] about one degree
 LARGEST_STEP = 1e-3  # [s] at the reference size; contact needs it ten times shorter than the fastest pass
-SMALLEST_STEP = 1e-9  # [s] there; below it what a step changes is lost in rounding
+SMALLEST_STEP = 1e-9  # [s] at the reference size; below it the change in a step is lost in rounding
 
 
 @dataclass(frozen=True, slots=True)
 class Breach:
-    """The first step that breaks a rule, and the code of its `Diagnostic`."""
+    """First step that breaks a rule, and the code of its `Diagnostic`."""
 
     index: int
     code: str
 
 
 def energy_scale(body: Body, gravity: float) -> float:
-    """Return g (R - h): what it takes to raise the mass centre over the rim [m^2/s^2]."""
+    """Energy g (R - h) that raises the mass centre over the rim [m^2/s^2]."""
     b, h = body.base_radius, body.mass_centre_height
     # R - h = b^2/(R + h), which does not cancel for slender bodies
     return gravity * b * b / (float(np.hypot(b, h)) + h)
 
 
 def check_time_step(time_step: float, unit_time: float) -> None:
-    """Refuse a time step [s] that no contact can follow, or that is lost in rounding.
+    """Refuse a time step [s] too large for contact, or so small that rounding dominates.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def first_breach(
 
 
 def couple_power(poses: Steps, after: Steps, forces: Sequence[tuple[float, Array]], length: float) -> Array:
-    """Return the power that the couple of a rolling resistance takes, per unit of the driven mass.
+    """Power lost to the couple of a rolling resistance, per unit of the effective mass.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def couple_power(poses: Steps, after: Steps, forces: Sequence[tuple[float, Array
 
 
 DRIFT = 1e-3  # share of the largest energy gained or lost that is reported; sound runs stay below 5e-4
-_BLOCK = 100  # steps for which one largest error is kept: the time of a remark is as fine
+_BLOCK = 100  # steps that share one largest error: the time resolution of a remark
 
 
 class EnergyWatch:
@@ -184,7 +184,7 @@ class EnergyWatch:
 
     @property
     def moves(self) -> bool:
-        """Whether there has been a motion to speak of."""
+        """Whether there has been a motion above the noise of standing."""
         return self.largest >= self._least
 
     def take(self, time: Array, energy: Array, error: Array) -> None:
@@ -195,7 +195,7 @@ class EnergyWatch:
         self.largest = max(self.largest, float(energy.max()))
 
     def remark(self, until: float) -> tuple[float, float, float]:
-        """Return the start of an error above the reporting threshold [s], its largest share, and the bound.
+        """Start of an error above the reporting threshold [s], its largest share, and the bound.
 
         NaN and 0 if there is none. What happens after `until` [s] does not count.
         """

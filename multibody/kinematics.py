@@ -63,7 +63,7 @@ def kinematics(
     sine = np.sqrt(ax * ax + ay * ay)
     safe = np.where(sine > 0.0, sine, 1.0)
     height = z - h * az - b * sine  # height of the lowest point
-    # horizontal distance from the mass centre to the lowest point of the rim, along the lean
+    # horizontal distance from the mass centre to the lowest point of the rim, along the tilt vector
     out_x, out_y = ax / safe, ay / safe
     reach = b * az - h * sine
     down = height - z
@@ -90,7 +90,7 @@ def kinematics(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rim:
-    """Place and turning of the rim, wanted at some poses only.
+    """Position and orientation of the rim, computed at some poses only.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class Rim:
 
 
 def rim(poses: Steps, after: Steps, body: Body) -> Rim:
-    """Return place and turning of the rim at `poses`; arguments as for `kinematics`."""
+    """Position and orientation of the rim at `poses`; arguments as for `kinematics`."""
     wx, wy, wz = mean_spin(poses, after).T
     axis = axis_of(poses.quaternion)
     ax, ay, az = axis.T
@@ -117,7 +117,7 @@ def rim(poses: Steps, after: Steps, body: Body) -> Rim:
     outward = axis[:, :2] / safe[:, None]
     outward[sine == 0.0] = (1.0, 0.0)
     base_centre = poses.position - body.mass_centre_height * axis
-    # the horizontal part of spin x axis, across the lean
+    # horizontal part of spin x axis, across the tilt vector
     rate_x, rate_y = wy * az - wz * ay, wz * ax - wx * az
     return Rim(
         rolling_rate=(ax * rate_y - ay * rate_x) / safe**2,
@@ -172,7 +172,7 @@ def turning(before: Array, quaternion: Array) -> Array:
     w0, v0, w1, v1 = earlier[:, :1], earlier[:, 1:], quaternion[:, :1], quaternion[:, 1:]
     real = w1 * w0 + np.einsum("ij,ij->i", v1, v0)[:, None]
     imaginary = w0 * v1 - w1 * v0 - np.cross(v1, v0)
-    # the shorter way, whichever sign the engine gave the quaternion
+    # the shorter rotation, for either sign of the quaternion
     imaginary, real = imaginary * np.where(real < 0.0, -1.0, 1.0), np.abs(real)
     size = np.linalg.norm(imaginary, axis=1)[:, None]
     factor = np.where(size > 0.0, 2.0 * np.arctan2(size, real) / np.where(size > 0.0, size, 1.0), 2.0)
@@ -225,7 +225,7 @@ def unwrap(
     change = np.diff(waiting, prepend=before)
     change -= 2.0 * np.pi * np.round(change / (2.0 * np.pi))
     large = np.flatnonzero(np.abs(change) > 0.5 * np.pi)
-    # the first lean after standing comes from no turn at all
+    # the first tilt after standing has no angle to continue from
     large = large[meaningful[large] & np.append(leant_before, meaningful[:-1])[large]]
     if len(large):
         way = np.sign(momentum(large))

@@ -1,4 +1,4 @@
-"""Whether an engine moves as it must where mechanics proves how: its mode, slides, impacts in one plane.
+"""Diagnostics of an engine's run in cases with an exact mode, slide or planar impact.
 
 What slides from rest on flat ground with friction below b/h is a point with friction on the moving ground:
 x'' = -a - mu (g + az) v/|v|. Solved here by a step of its own, in which friction takes of the velocity what
@@ -74,8 +74,8 @@ def path_of_slide(case: Case, times: Array) -> Array:
 
 
 _KEPT_TOLERANCE = 0.01  # share of the energy with which the base closes
-_LEAST = 0.01  # share of the largest energy: a closing with less decides no motion
-_STEPS = 3.0  # steps of the engine that an impact takes at most, to either side
+_LEAST = 0.01  # share of the largest energy: an impact with less decides no motion
+_STEPS = 3.0  # largest duration of an impact in steps of the engine, to either side
 
 
 def compare_impacts(trace: Trace) -> Trace:
@@ -112,7 +112,7 @@ def _impacts(trace: Trace, largest: float) -> tuple[list[tuple[float, float, flo
     None where two of them lie between two samples.
     """
     time, error = trace.time, trace.energy_error
-    # energy supplied by the start and the ground: a kink at an impact, and no jump
+    # energy supplied by the start and the ground, continuous at an impact
     supplied = trace.energy - error
     change = np.diff(error)
     impacts: list[tuple[float, float, float]] = []

@@ -53,13 +53,13 @@ def turning_points(time: Array, tilt: Array, rolling_angle: Array) -> list[Turni
 
 
 def filter_noise_swings(points: list[TurningPoint], threshold: float) -> list[TurningPoint]:
-    """Leave out swings smaller than `threshold` [rad]: those are contact noise."""
+    """Turning points without swings smaller than `threshold` [rad], which are contact noise."""
     kept: list[TurningPoint] = []
     for point in points:
         if kept and point.is_maximum != kept[-1].is_maximum and abs(point.tilt - kept[-1].tilt) < threshold:
             kept.pop()
         if kept and point.is_maximum == kept[-1].is_maximum:
-            # two of a kind meet where a small swing between them was dropped: the outer one is real
+            # two maxima or minima meet where a small swing between them was dropped: the outer one is real
             if (point.tilt > kept[-1].tilt) == point.is_maximum:
                 kept[-1] = point
         else:
@@ -70,7 +70,7 @@ def filter_noise_swings(points: list[TurningPoint], threshold: float) -> list[Tu
 def passes_between(
     points: list[TurningPoint], threshold: float, rests: Sequence[tuple[float, float]] = ()
 ) -> pd.DataFrame:
-    """Return the passes, tilt minima between two maxima, without swings smaller than `threshold` [rad].
+    """Passes, tilt minima between two maxima, without swings smaller than `threshold` [rad].
 
     A pass belongs to one motion: both its maxima lie on the same side of every rest, of which `rests` holds
     start and end [s].
@@ -87,7 +87,7 @@ def passes_between(
     ends = [end for _, end in rests]
     for point in points:
         number = bisect_right(ends, point.time)
-        # events in a rest are no swing of either motion
+        # extrema during a rest are no swing of either motion
         if number == len(rests) or point.time < rests[number][0]:
             motions[number].append(point)
     rows = [
@@ -126,13 +126,13 @@ def _vertex(values: Array) -> tuple[float, float]:
     return offset, middle + 0.5 * slope * offset
 
 
-# [s] at the reference size. A base that rocks by the 1e-5 alpha at which it counts as closed goes up and down
-# in 8 ms, whatever its slenderness; what stays below for longer than two such swings stands.
+# [s] at the reference size. A base that rocks by the 1e-5 alpha at which it counts as closed has a period of
+# 8 ms, at any slenderness; a tilt below that for longer than two such swings is a rest.
 SHORTEST = 0.02
 
 
 class RestWatch:
-    """Notes, chunk by chunk, the stretches over which the tilt stays below a level.
+    """Watch over chunks of steps for stretches in which the tilt stays below a level.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ class RestWatch:
         return [*self._over, (self._since, self._last)]
 
     def after_motion(self) -> list[tuple[float, float]]:
-        """Return the rests without the stand before the first motion; NaN ends a rest that lasts."""
+        """Rests without the stand before the first motion; NaN ends a rest that lasts."""
         later = [rest for rest in self.rests() if rest[0] > 0.0]
         if later and self.resting:
             later[-1] = (later[-1][0], math.nan)

@@ -58,7 +58,7 @@ _NOTHING: Settings = MappingProxyType({})
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class EngineFacts(CompactRepr):
-    """Measured facts of one engine, for plans and predictions; the defaults are those of an unknown one.
+    """Measured facts of one engine, for plans and predictions; the defaults suit an unknown engine.
 
     Attributes
     ----------
@@ -175,7 +175,7 @@ class Stepper(Protocol):
 
     @property
     def hold_centre(self) -> float:
-        """Centre c of the time over which the force of step n is a mean, from pose n, in steps: 0 to 1."""
+        """Centre c of the time of the mean force of step n, in steps after pose n: 0 to 1."""
         ...
 
     def advance(self, acceleration: Array) -> Steps:
@@ -197,20 +197,20 @@ class Engine(Protocol):
 
     @property
     def uplifts(self) -> bool:
-        """Whether it can start from a cylinder that stands; otherwise a run needs a release with a tilt."""
+        """Whether it can start from a standing cylinder; otherwise a run needs a release with a tilt."""
         ...
 
     @property
     def facts(self) -> EngineFacts:
-        """Facts known of it beforehand; `EngineFacts()` where nothing was measured."""
+        """Facts of the engine, measured beforehand; `EngineFacts()` where nothing was measured."""
         ...
 
     def version(self) -> str:
-        """Return the version of the package, for the record: results differ between versions."""
+        """Version of the package, for the record: results differ between versions."""
         ...
 
     def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
-        """Return every setting, from those `given` (in the units of the user) and the time step.
+        """All settings, from those `given` (in the units of the user) and the time step.
 
         Raises
         ------
@@ -220,5 +220,5 @@ class Engine(Protocol):
         ...
 
     def open(self, scene: Scene, settings: Settings) -> AbstractContextManager[Stepper]:
-        """Return a context that opens the scene at its start and closes it whatever happens."""
+        """Context manager that opens the scene at its start and closes it also after an exception."""
         ...

@@ -1,4 +1,4 @@
-"""Contact force and uplift, from the velocities of an engine and nothing else.
+"""Contact force and uplift, from the velocities of an engine alone.
 
 The mass centre obeys force/m = change of its velocity in a step + ground acceleration + g, exactly for what
 an engine stepped with, whichever engine it is; no sensor needs to be in the scene. A guide is a pure moment
@@ -29,7 +29,7 @@ from .scene import Array, Body
 # Steps on each side of a sample. Under El Centro a quarter of MuJoCo's single steps are more than 1 % off the
 # reduced model's normal force, windows of 16 still 4 %, these none; longer ones blur the kinks of a record.
 HALF_WINDOW = 32
-_GRIP = 0.02  # share of the friction, and weights, that rounding and the window leave in doubt
+_GRIP = 0.02  # share of the friction, and weights, within the error of rounding and the window
 _PULL = 1e-3  # weights; far above rounding
 _WEIGHTS: Array = np.hanning(2 * HALF_WINDOW + 3)[1:-1] / (HALF_WINDOW + 1.0)  # Hann window; sum 1
 
@@ -37,7 +37,7 @@ _WEIGHTS: Array = np.hanning(2 * HALF_WINDOW + 3)[1:-1] / (HALF_WINDOW + 1.0)  #
 def force_of_steps(
     poses: Steps, after: Steps, ground: Array, time_step: float, gravity: float, gain: float = 1.0
 ) -> Array:
-    """Return the force on what is carried, in its weights, shape (3, n), world axes.
+    """Contact force on the carried mass, in its weights, shape (3, n), world axes.
 
     The cylinder is, by the ground and by walls; in a frame with its share of the slab, or the slab alone by
     the top. The velocity of its mass centre is `gain` times that of the cylinder.
@@ -77,7 +77,7 @@ def _first(time: Array, force: Array, breaks: Callable[[Array], NDArray[np.bool_
     """First time at which a force (3, n) `breaks` a rule in the mean over a window [s]; NaN if never."""
     if not breaks(force).any():
         return float("nan")
-    # not in single steps: where an engine pushes the rim out of the ground, the next step takes that back
+    # a mean, not single steps: an engine that pushes the rim out of the ground pulls it back in the next step
     kernel = np.full(HALF_WINDOW, 1.0 / HALF_WINDOW)
     mean = np.array([np.convolve(component, kernel, mode="same") for component in force])
     losses = np.flatnonzero(breaks(mean))
@@ -97,8 +97,8 @@ class ForceSamples:
 
     def __init__(self, samples: Array, time_step: float) -> None:
         self._samples, self._step = samples, time_step
-        self._known: Array = np.empty((3, 0))  # force of the last steps
-        self._first = 0  # number of the first of them
+        self._known: Array = np.empty((3, 0))  # force in the last steps
+        self._first = 0  # number of the first of these steps
         self._found: list[Array] = []
         self._taken = 0
 
@@ -109,7 +109,7 @@ class ForceSamples:
     def add(self, force: Array) -> None:
         """Take the next steps, shape (3, n)."""
         if self._first == 0 and not self._known.size and force.shape[1] > 1:
-            # an engine has yet to load its contact in the first step: a percent of the weight
+            # in the first step an engine has yet to load its contact: a percent of the weight
             force, self._first = force[:, 1:], 1
         self._known = np.hstack([self._known, force])
         settled = (self._first + self._known.shape[1] - HALF_WINDOW - 2) * self._step
@@ -117,17 +117,17 @@ class ForceSamples:
         if len(due):
             self._found.append(self._means(due))
             self._taken += len(due)
-        # a sample still to come looks back by half a window
+        # a later sample needs half a window before it
         surplus = max(self._known.shape[1] - 2 * HALF_WINDOW - 3, 0)
         self._known, self._first = self._known[:, surplus:], self._first + surplus
 
     def at(self, times: Array) -> Array:
-        """Return the force at the samples that a run has reached, and at its end, shape (n, 3)."""
+        """Force at the samples that a run has reached, and at its end, shape (n, 3)."""
         forces = np.vstack([*self._found, np.empty((0, 3))])[: len(times)]
         return np.vstack([forces, self._means(times[len(forces) :])])
 
     def _means(self, times: Array) -> Array:
-        """Means about `times` (n,), over the part of the window that is known, shape (n, 3)."""
+        """Means about `times` (n,), over the known part of the window, shape (n, 3)."""
         count = self._known.shape[1]
         position = times / self._step - self._first
         before = np.floor(position).astype(np.intp)
@@ -136,25 +136,25 @@ class ForceSamples:
         weights = (1.0 - part) * np.append(_WEIGHTS, 0.0) + part * np.append(0.0, _WEIGHTS)
         weights *= (column >= 0) & (column < count)
         total = weights.sum(axis=1)
-        # past the last step, where a fall ends between two
+        # after the last step, where a fall ends between two steps
         weights[total == 0.0, -1], total[total == 0.0] = 1.0, 1.0
         windows = self._known[:, np.clip(column, 0, count - 1)]
         return np.asarray(np.einsum("imj,mj->mi", windows, weights) / total[:, None])
 
 
-SURE_TILT = 5e-6  # tilt over alpha; a standing cylinder leans by 1e-9 rad in MuJoCo, 1e-8 rad in Bullet
-# Rounding errors; at 0.98 of the load that uplifts it a standing cylinder leans by up to 120 of them in
-# Rapier, as single precision knows the height of its corners
+SURE_TILT = 5e-6  # tilt over alpha; a standing cylinder tilts by 1e-9 rad in MuJoCo, 1e-8 rad in Bullet
+# Rounding errors; at 0.98 of the uplift load a standing cylinder tilts by up to 120 of them in Rapier, the
+# single precision of the height of its corners
 _SURE_ROUNDINGS = 150.0
-_MEMORY = 4000  # steps kept before that tilt: it takes a few hundred from the uplift
-# Eccentricities, over b, up to which the reaction may be expected to follow. Contact yields next to the rim,
-# and Bullet's four contacts share the load by turns there: the highest with a steady ratio counts.
+_MEMORY = 4000  # steps stored before that tilt: from the uplift to it there are a few hundred
+# Eccentricities, over b, up to which the reaction should follow. Contact yields next to the rim, and Bullet's
+# four contacts share the load in turn there: the highest with a steady ratio counts.
 _LEVELS = (0.97, 0.94, 0.9, 0.8)
-_FIT = 20  # steps that must follow
+_FIT = 20  # number of steps that must follow
 _STEADY = 2e-3  # largest deviation of their ratio
 _AT_RIM = 0.99  # eccentricity over b; a polygon of 48 corners carries the reaction at 0.998 b or more
-_SPIKE = 9  # steps; a single step that loses contact, or carries twice the load, says nothing
-# eccentricity over b; a reaction that lags so far behind has left the excitation: the base tips early
+_SPIKE = 9  # steps; a single step without contact, or with twice the load, is noise
+# eccentricity over b; a reaction with a larger lag has left the excitation: the base tips early
 _DEPARTURE = 0.015
 # share of the uplift load: engines in double precision open within 3e-4 of it, Rapier up to a tenth early
 EARLY = 5e-3
@@ -162,19 +162,19 @@ _MINIMUM_LOAD = 0.1  # weights; a smaller reaction, in the step that loses conta
 
 
 def sure_tilt(body: Body, rounding: float) -> float:
-    """Return the tilt [rad] that is motion beyond doubt, at a relative rounding error."""
+    """Tilt [rad] beyond the noise of standing, at a relative rounding error."""
     return max(SURE_TILT * float(np.arctan(body.tan_alpha)), _SURE_ROUNDINGS * rounding)
 
 
 def begun_at(direction: float, angle: Array, leans: NDArray[np.bool_]) -> Array:
-    """Return the rolling angle (n,) that begins, at the first lean, in the turn of `direction`."""
+    """Rolling angle (n,) from the first tilt on, in the turn of `direction`."""
     first = int(np.argmax(leans))
     turns = np.round((direction - angle[first]) / (2.0 * np.pi))
     return np.where(np.arange(len(angle)) < first, angle, angle + 2.0 * np.pi * turns)
 
 
 class UpliftWatch:
-    """Follows a standing cylinder chunk by chunk until it uplifts.
+    """Watch over chunks of steps for the uplift of a standing cylinder.
 
     Attributes
     ----------
@@ -192,7 +192,7 @@ class UpliftWatch:
     def watch(
         self, time: Array, tilt: Array, poses: Steps, after: Steps, acceleration: Array
     ) -> tuple[float, float] | None:
-        """Return time [s] and direction [rad] of the uplift once it has happened, None before.
+        """Time [s] and direction [rad] of the uplift once it has happened, None before.
 
         `acceleration` (n, 3) is the ground's in the step after each pose.
         """
@@ -200,7 +200,7 @@ class UpliftWatch:
         reaction = self._reaction_eccentricity(poses, after, acceleration)
         rows = np.column_stack([time, reaction, still])
         b = self._body.base_radius
-        # a load that passes the rim for a millisecond uplifts the base by less than that tilt
+        # a load beyond the rim for a millisecond uplifts the base by less than that tilt
         passes = (np.hypot(still[:, 0], still[:, 1]) >= b) & (
             np.hypot(reaction[:, 0], reaction[:, 1]) > _AT_RIM * b
         )
@@ -212,7 +212,7 @@ class UpliftWatch:
     def _reaction_eccentricity(self, poses: Steps, after: Steps, acceleration: Array) -> Array:
         """Point of action of the ground's reaction, relative to the centre of the base, shape (n, 2) [m]."""
         body = self._body
-        # per unit of the driven mass; in a frame the forces at base and top act on opposite sides of it
+        # per unit of the effective mass; in a frame the forces at base and top act on opposite sides of it
         moved = body.moved_mass / body.effective_mass
         force = moved * (after.velocity - poses.velocity) / self._step + acceleration
         load = np.maximum(force[:, 2] + self._gravity, _MINIMUM_LOAD * self._gravity)
@@ -239,7 +239,7 @@ class UpliftWatch:
             if np.abs(ratio - middle).max() > _STEADY:
                 continue
             return self._follow(time, still, middle * expected, share, end)
-        # the load jumped over the rim: no approach, and no doubt about the step
+        # the load jumped over the rim: there is no approach, and no doubt about the step
         inside = np.flatnonzero(share < _LEVELS[0])
         step = min(int(inside[-1]) + 1 if len(inside) else 0, len(time) - 1)
         return self._open(float(time[step]), still[step])
@@ -247,7 +247,7 @@ class UpliftWatch:
     def _follow(
         self, time: Array, still: Array, expected: Array, share: Array, end: int
     ) -> tuple[float, float]:
-        """Go on from step `end` to where the expected eccentricity is b, or the reaction lags for good."""
+        """Continue from step `end` to an expected eccentricity of b, or to a reaction that lags for good."""
         over = np.flatnonzero(expected[end:] >= 1.0)
         step = end + int(over[0]) if len(over) else len(time) - 1
         follows = np.flatnonzero(expected[end:step] - share[end:step] < _DEPARTURE)
@@ -260,7 +260,7 @@ class UpliftWatch:
         return self._open(float(time[step - 1] + part * (time[step] - time[step - 1])), at)
 
     def _open(self, time: float, still: Array) -> tuple[float, float]:
-        """Return time and direction of an uplift under a load of eccentricity `still` (2,), and note it."""
+        """Time and direction of an uplift under a load of eccentricity `still` (2,), which is recorded."""
         self.missing = 1.0 - float(np.hypot(*still)) / self._body.base_radius
         return time, float(np.arctan2(still[1], still[0]))
 

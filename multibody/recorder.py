@@ -47,8 +47,8 @@ T = TypeVar("T", Steps, Kinematics, Wall)
 
 _SIDE_TOUCHES = OVERTURNED_TILT - 1e-3  # [rad] contact of the side may stop the fall a little before
 
-FLIGHT = 1e-3  # height over b that counts as flight: a sliding rim may hover below it in MuJoCo
-SLIP = 0.01  # slip over b that is more than the creep of a rolling rim
+FLIGHT = 1e-3  # height over b that counts as flight: in MuJoCo a sliding rim may hover below it
+SLIP = 0.01  # slip over b beyond the creep of a rolling rim
 # share of the energy scale: a base that opens by less than 1e-4 alpha has not moved
 _LEAST_ENERGY = 2e-4
 _ROUNDING = 1e-6  # share of a step
@@ -91,16 +91,16 @@ class Recorder:
         self._gains = body.velocity_ratios if joined else body.velocity_ratios[:1]
         self._scene, self._samples = scene, samples
         self.mode = scene.mode
-        self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
-        self.off_grid = False  # whether it is no sample of a run that is extended
+        self.asked = float(samples[-1])  # end of the requested run, before any extension [s]
+        self.off_grid = False  # whether the end is off the sample grid of an extended run
         self._watch: UpliftWatch | None = None
         if start.standing:
             self._watch = UpliftWatch(body, scene.tipping_gravity, scene.time_step, rounding)
         self._start: Start | None = start
-        self._last: Steps | None = None  # the pose whose next velocity is still to come
+        self._last: Steps | None = None  # pose whose next velocity is still to come
         self._count = 0  # poses analysed
         self._angle, self._twist = rolling_angle, 0.0
-        self._leans = not start.standing  # state at the last pose analysed
+        self._leans = not start.standing  # whether it tilts at the last pose analysed
         self._tail: Array = np.empty((3, 0))  # time, tilt and rolling angle of the last steps
         # last step analysed: time and the fields of `COLUMNS`
         self.last_row: Array = np.empty(len(COLUMNS) + 1)
@@ -118,29 +118,29 @@ class Recorder:
             _LEAST_ENERGY * balance if start.standing else 0.0,
             balance if lean > scene.balance_tilt else 0.0,
         )
-        self.looks = 0  # checks of the solver, and those in which it had not converged
+        self.looks = 0  # checks of the solver, and the number without convergence
         self.unsolved = 0
-        # when more than friction held an end, and when it was held down, which only a joint does [s]
+        # times at which an end needed more than friction, and a pull, which only a joint supplies [s]
         self.grip_time = self.pull_time = math.nan
-        # a standing cylinder leans by less, in no direction
+        # a standing cylinder tilts by less, in no direction
         sure = sure_tilt(body, rounding)
         self.floor = sure if start.standing else min(sure, 0.5 * lean)
         self.rests = RestWatch(2.0 * self.floor)
         self._at_turn = not start.standing and starts_at_turn
         self.points: list[TurningPoint] = []
         self.peak = 0.0
-        self.elongation = 0.0  # largest so far [m]
+        self.elongation = 0.0  # largest elongation so far [m]
         self.yield_time = math.nan  # when the tendon would first have yielded [s]
         self._balance = scene.balance_tilt
         self.fastest = 0.0
         self.uplift: tuple[float, float] | None = None if start.standing else (0.0, rolling_angle)
-        self.missing_load = math.nan  # at the uplift, share of the load that uplifts
+        self.missing_load = math.nan  # at the uplift, missing share of the uplift load
         self.ended: str = ""
         self.failure = ""  # code of the diagnostic that ended the run
         self.warnings: list[str] = []
         self.end_time = math.inf
-        self.followed_until = math.nan  # when it was at its next maximum, or at rest, after the end [s]
-        self.undecided = False  # whether neither, nor the ground, came in time
+        self.followed_until = math.nan  # time of the next maximum, or of rest, after the end [s]
+        self.undecided = False  # whether neither of both, nor the ground, was reached in time
 
     @property
     def table(self) -> Array:
@@ -167,7 +167,7 @@ class Recorder:
         return max(float(np.median(self._depths)), 0.0) if self._depths else 0.0
 
     def take(self, steps: Steps, acceleration: Array) -> None:
-        """Analyse the poses whose following velocity `steps` brings.
+        """Analyse the poses for which `steps` brings the following velocity.
 
         `acceleration` (n, 3) is the ground's during `steps`: its first row belongs to the step that
         follows the last pose known so far.
@@ -180,14 +180,14 @@ class Recorder:
         state = kinematics(poses, after, body, self._scene.gravity, self._scene.restraint)
         state = replace(state, twist=unwrap_twist(state.twist, self._twist))
         gained = self.energy.error(state, poses, after, acceleration)
-        # before the couple, whose part is not known well enough to end a run by
+        # before the couple, whose estimate is too coarse to end a run
         stop = self._stop(time, state, gained, wall)
         if not stop:
             return
         lost = self._rolling_loss(poses, after, acceleration)
         gained = gained + lost
         if stop < count:
-            # whatever the engine did after the end, the side on the ground included, is no part of the run
+            # motion after the end, the side on the ground included, is no part of the run
             inside = slice(stop)
             time, gained, lost, acceleration = (each[inside] for each in (time, gained, lost, acceleration))
             poses, after, state = _rows(poses, inside), _rows(after, inside), _rows(state, inside)
@@ -224,14 +224,14 @@ class Recorder:
         self._follow(np.stack([time, state.tilt, angle]))
         self.energy.take(time, state.energy, gained)
         self.rests.take(time, state.tilt)
-        # a fall beyond the balance is faster than any pass, and none comes after it
+        # a fall beyond the balance is faster than any pass, and no pass follows it
         within = state.tilt < self._balance
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
         # forces on the base, and on a slab that keeps to the top
         ends = self._contact_forces(poses, after, acceleration, self._gains)
         self.forces.add(ends[0])
-        # a wall may well push the cylinder down, by its friction or where the rim is below it
+        # a wall may push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:
             self.pull_time = float(np.fmin.reduce([contact_tension_time(time, force) for force in ends]))
         if math.isnan(self.grip_time) and wall is None:
@@ -241,7 +241,7 @@ class Recorder:
         self._count += stop
 
     def extend(self, samples: Array) -> None:
-        """Go on to further samples, at times (n,) after the last one [s]."""
+        """Extend the run to further samples, at times (n,) after the last one [s]."""
         self._samples = np.append(self._samples, samples)
         self.forces.extend(samples)
 
@@ -253,7 +253,7 @@ class Recorder:
             self.warnings.append(text)
 
     def _pair(self, steps: Steps) -> tuple[Steps, Steps]:
-        """Poses with the velocities before them, and the same one step later."""
+        """Poses with the velocities before them, and the poses one step later."""
         if self._last is None:
             start = self._start
             assert start is not None
@@ -294,7 +294,7 @@ class Recorder:
         return ends
 
     def _rolling_loss(self, poses: Steps, after: Steps, ground: Array) -> Array:
-        """Energy that the rolling resistance has taken until each pose, shape (n,) [m^2/s^2]."""
+        """Energy lost to the rolling resistance until each pose, shape (n,) [m^2/s^2]."""
         scene, body = self._scene, self._scene.body
         if scene.rolling_resistance == 0.0:
             return np.zeros(len(poses.position))
@@ -305,7 +305,7 @@ class Recorder:
         return self.energy.loss(power)
 
     def _slip(self, time: Array, state: Kinematics) -> Array:
-        """Distance that the contact has slipped until each pose [m]; note slip and flight."""
+        """Slip distance of the contact until each pose [m]; times of slip and flight are recorded."""
         b = self._scene.body.base_radius
         touching = state.depth > -FLIGHT * b
         slipped: Array = self._slipped + self._scene.time_step * np.cumsum(state.slip_rate * touching)
@@ -315,7 +315,7 @@ class Recorder:
         return slipped
 
     def _watch_tendon(self, time: Array, poses: Steps) -> Array:
-        """Return the elongations of the tendon, shape (n,) [m]; note where it would yield."""
+        """Elongations of the tendon, shape (n,) [m]; the time of yield is recorded."""
         restraint, height = self._scene.restraint, self._scene.body.mass_centre_height
         if not restraint.is_active:
             return np.zeros(len(time))
@@ -349,7 +349,7 @@ class Recorder:
         fresh = joined[:, max(self._tail.shape[1] - 2, 0) :]
         tilt, angle = joined[1:]
         if self._at_turn and len(tilt) > 1:
-            # released at rest in tilt, the start is a turning point as well
+            # in a release at rest in tilt, the start is a turning point as well
             self.points.append(TurningPoint(0.0, float(tilt[0]), float(angle[0]), bool(tilt[1] < tilt[0])))
             self._at_turn = False
         if joined.shape[1] > 2 and self.uplift is not None:
@@ -384,7 +384,7 @@ class Recorder:
 
 
 def _first_time(known: float, time: Array, happens: NDArray[np.bool_]) -> float:
-    """First time of an event [s]: the one that is known, or in these steps; NaN before."""
+    """First time of an event [s]: known before, or in these steps; NaN without one."""
     return float(time[np.argmax(happens)]) if math.isnan(known) and happens.any() else known
 
 
@@ -396,7 +396,7 @@ def _after(last: Array, rows: Array) -> Array:
 
 
 def _rows(values: T, part: slice | Indices) -> T:
-    """Return the same of a part of the steps."""
+    """Selection of steps, as the same kind of table."""
     arrays: dict[str, Any] = {
         name: each[part] for name, each in fields_of(values).items() if isinstance(each, np.ndarray)
     }
@@ -404,7 +404,7 @@ def _rows(values: T, part: slice | Indices) -> T:
 
 
 class WallWatch:
-    """Adds up, chunk by chunk, how long and how hard the cylinder has pressed on walls.
+    """Sum over chunks of the duration and the impulse of contact with walls.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The restraint of a scene: what holds a body down besides its weight, stated once for run and engines.
+"""Restraint of a scene: the forces besides the weight that hold a body down, for recorder and engines.
 
 A `Restraint` answers what scene, kinematics and recorder ask of everything that holds the body down: couple
 and its slope, forces on a closed base, energy and the pull on what the ends carry. A term that is new adds
@@ -40,14 +40,14 @@ Array = NDArray[np.float64]
 # depth of the anchor over b: a release in MuJoCo is off by 7e-7 alpha at 1e-4, by 7e-8 at 1e-5 and at 1e-6,
 # where 5e-8 remain without a tendon; at 1e-7 it uplifts too early
 ANCHOR_DEPTH = 1e-5
-# the least depth in roundings of b, so that the direction of v at rest is not noise: Rapier (2^-24) uplifts
-# by 26 ms too early at 1e-5 b, by 6 ms at this depth of 1e-3 b, by 4 ms without a tendon
+# least depth in roundings of b, so that the direction of v at rest is not noise: Rapier (2^-24) uplifts 26 ms
+# too early at 1e-5 b, 6 ms at this depth of 1e-3 b, 4 ms without a tendon
 _ROUNDINGS = 2.0**14
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Restraint(CompactRepr):
-    """Restraint that holds the body of a scene down besides its weight; by default none.
+    """Forces that hold the body of a scene down besides its weight; by default none.
 
     Per unit mass of the column. Where an answer takes poses, they are n places of the mass centre (n, 3) [m],
     axes (n, 3), and the height of the mass centre above the base [m].
@@ -73,7 +73,7 @@ class Restraint(CompactRepr):
 
     @property
     def is_active(self) -> bool:
-        """Whether anything but the weight holds the body down."""
+        """Whether a force besides the weight holds the body down."""
         return self.depth > 0.0
 
     def force(self, x: float, y: float, z: float) -> tuple[float, float, float]:
@@ -133,7 +133,7 @@ WEIGHT_ALONE = Restraint()
 
 
 def scaled_restraint(case: Case, base_radius: float, gravity: float, rounding: float = 0.0) -> Restraint:
-    """Return the restraint of a case at the size of a scene, of a base radius [m] and a gravity [m/s^2].
+    """Restraint of a case at the size of a scene, with a base radius [m] and a gravity [m/s^2].
 
     `rounding` is that of the engine, relative: an anchor lies deep enough for it.
     """

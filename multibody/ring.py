@@ -56,8 +56,8 @@ from .protocol import Settings
 from .scene import Array, Scene
 from .settings import EngineSettings, positive, whole
 
-_ROUNDING = 1e-12  # [b] of a tilt that comes back from a quaternion
-STEEPEST = 1.5  # [rad] a wall that leans further is a floor
+_ROUNDING = 1e-12  # [b] of a tilt computed back from a quaternion
+STEEPEST = 1.5  # [rad] a wall with a larger inclination is a floor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +92,7 @@ class RingSettings(EngineSettings):
 
 
 def take_ring(given: Settings, support: Support, tan_alpha: float) -> tuple[Settings, RingSettings | None]:
-    """Return the settings that are not of the ring, and the ring; None for every other support.
+    """Settings other than those of the ring, and the ring; None for every other support.
 
     The inclination is arctan(tan_alpha) unless given.
 
@@ -112,7 +112,7 @@ def take_ring(given: Settings, support: Support, tan_alpha: float) -> tuple[Sett
 
 
 def clearance_needed(cylinder: RockingBody, tilt: float, inclination: float) -> float:
-    """Return the clearance of a ring that nothing touches up to a tilt, in base radii.
+    """Clearance of a ring without any contact up to a tilt, in base radii.
 
     For walls that are half-spaces, and the motion of the recess model.
 

@@ -48,7 +48,7 @@ class Body:
 
     @property
     def effective_mass(self) -> float:
-        """Mass that gravity and the ground move at the mass centre: the slab goes twice as far [-]."""
+        """Mass at the mass centre with the weight of column and slab, which moves twice as far [-]."""
         return 1.0 + 2.0 * self.slab_mass_ratio
 
     @property
@@ -58,7 +58,7 @@ class Body:
 
     @property
     def velocity_ratios(self) -> tuple[float, ...]:
-        """Velocity of what each end carries, the base first, over that of the mass centre [-]."""
+        """Velocity of each carried mass, at the base first, over that of the mass centre [-]."""
         slab = self.slab_mass_ratio
         return (1.0,) if slab == 0.0 else (self.effective_mass / (1.0 + slab), 2.0)
 
@@ -118,8 +118,8 @@ def starting_state(body: Body, initial: InitialState | None, time: float) -> Sta
     Equations (8) and (10) give the pose.
     """
     if initial is None or initial.tilt == 0.0:
-        # the x axis of the cylinder along that of the world: its matrix is then exactly the unit matrix,
-        # where any other heading leaves rounding that plane-cylinder contact magnifies
+        # with the x axis of the cylinder along that of the world its matrix is exactly the unit matrix; any
+        # other heading leaves rounding, which plane-cylinder contact magnifies
         upright = np.array([0.0, 0.0, body.mass_centre_height])
         return Start(True, upright, np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), np.zeros(3))
     theta, phi = initial.tilt, initial.rolling_angle
@@ -141,14 +141,14 @@ def starting_state(body: Body, initial: InitialState | None, time: float) -> Sta
     return Start(False, position, quaternion, velocity, angular_velocity)
 
 
-REFERENCE_SEMIDIAGONAL = 6.0  # [m] the size of the examples: contact settings were measured there
+REFERENCE_SEMIDIAGONAL = 6.0  # [m] size of the examples, at which contact settings were measured
 REFERENCE_GRAVITY = 9.81  # [m/s^2]
 REFERENCE_TIME_STEP = 1e-4  # [s] at the reference size
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Units of the reference scene in the units of the user.
+    """Units of the reference scene in SI units.
 
     Attributes
     ----------
@@ -173,24 +173,24 @@ class Scale:
 
 
 def froude_scale(semidiagonal: float, gravity: float) -> Scale:
-    """Return the scale that carries the reference scene to a semidiagonal [m] and a gravity [m/s^2]."""
+    """Scale from the reference scene to a semidiagonal [m] and a gravity [m/s^2]."""
     length = semidiagonal / REFERENCE_SEMIDIAGONAL
     return Scale(length, math.sqrt(length * REFERENCE_GRAVITY / gravity))
 
 
 def default_step(semidiagonal: float, gravity: float) -> float:
-    """Return the time step of a run that states none [s], for a semidiagonal [m] and a gravity [m/s^2]."""
+    """Default time step [s], for a semidiagonal [m] and a gravity [m/s^2]."""
     return REFERENCE_TIME_STEP * froude_scale(semidiagonal, gravity).time
 
 
-# least slope of the restoring couple, over that of the weight alone: at a balance where that of a restraint
-# takes nearly all of it, nobody waits longer than ten times as long
+# least slope of the restoring couple, over that of the weight alone: bounds the waiting time at a balance
+# where a restraint cancels nearly all of it to ten times
 _LEAST_GROWTH = 0.01
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Scene:
-    """One run, stated for every engine, at the reference size and gravity.
+    """One run in engine-independent terms, at the reference size and gravity.
 
     Attributes
     ----------
@@ -230,7 +230,7 @@ class Scene:
 
     @property
     def tipping_gravity(self) -> float:
-        """Gravity whose weight would hold the base down as weight and restraint do [m/s^2].
+        """Gravity whose weight alone holds the base down as weight and restraint do [m/s^2].
 
         Without vertical motion the base opens at b/h of it; what tips a frame are twice the forces of its
         slab.
@@ -239,12 +239,12 @@ class Scene:
 
     @property
     def pressing_gravity(self) -> float:
-        """Gravity whose weight would press a closed base on the ground as weight and restraint do [m/s^2]."""
+        """Gravity whose weight alone presses a closed base as weight and restraint do [m/s^2]."""
         return self.gravity + self.restraint.prestress / (1.0 + self.body.slab_mass_ratio)
 
     @property
     def balance_tilt(self) -> float:
-        """Tilt beyond which the base does not close by itself [rad]; infinite where there is none to pi/2."""
+        """Tilt beyond which the base does not close by itself [rad]; infinite without one up to pi/2."""
         alpha = math.atan(self.body.tan_alpha)
         if not self.restraint.is_active:
             return alpha
@@ -257,13 +257,13 @@ class Scene:
 
     @property
     def growth_time(self) -> float:
-        """Time in which a small distance from the balance grows by e [s]; where there is none, 1/p."""
+        """Time in which a small distance from the balance grows by e [s]; 1/p without a balance."""
         body, b, h = self.body, self.body.base_radius, self.body.mass_centre_height
         inertia = (body.transverse_inertia + body.moved_mass * (h * h + b * b)) / body.effective_mass
         weight = growth = self.gravity * math.hypot(b, h)
         tilt = self.balance_tilt
         if self.restraint.is_active and math.isfinite(tilt):
-            # the slope of the couple there, without its sign
+            # absolute slope of the couple there
             growth = self.gravity * (b * math.sin(tilt) + h * math.cos(tilt))
             growth -= self.restraint.couple_slope(tilt, b) / body.effective_mass
         return math.sqrt(inertia / max(growth, _LEAST_GROWTH * weight))

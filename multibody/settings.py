@@ -17,13 +17,13 @@ Check = Callable[[str, object], None]
 
 
 def positive(*, most: float = math.inf, or_zero: bool = False) -> Check:
-    """Return the check of a positive number of at most `most`; `or_zero` allows 0, too."""
+    """Check of a positive number of at most `most`; `or_zero` allows 0, too."""
     least, above = (0.0, -math.inf) if or_zero else (-math.inf, 0.0)
     return partial(require_in_range, kind=(int, float), least=least, above=above, most=most)
 
 
 def one_of(*allowed: object) -> Check:
-    """Return the check of a value that is one of those allowed."""
+    """Check of a value against those allowed."""
 
     def check(name: str, value: object) -> None:
         if value not in allowed:
@@ -33,7 +33,7 @@ def one_of(*allowed: object) -> Check:
 
 
 def whole(*, least: int = 1, most: float = math.inf) -> Check:
-    """Return the check of a whole number."""
+    """Check of a whole number."""
     return partial(require_in_range, kind=int, least=least, most=most)
 
 
@@ -59,7 +59,7 @@ class EngineSettings:
 
     @classmethod
     def resolve(cls, given: Mapping[str, object], time_step: float) -> Self:
-        """Return the settings for a time step [s], with those `given` in place of the defaults.
+        """Settings for a time step [s], with those `given` in place of the defaults.
 
         Raises
         ------

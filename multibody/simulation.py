@@ -47,8 +47,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-STEP_SETTINGS = {"step_tolerance": AUTO, "finest_step": EXTRAPOLATED}  # settings of the ways to a step
-_SWING = 1e-9  # [rad] smallest difference of two turning points that is not rounding
+STEP_SETTINGS = {"step_tolerance": AUTO, "finest_step": EXTRAPOLATED}  # settings of the choice of a step
+_SWING = 1e-9  # [rad] least difference of two turning points above rounding
 
 
 def simulate(
@@ -144,7 +144,7 @@ def _simulate(
     settings: Settings,
 ) -> Trace:
     """Run with one time step [s]."""
-    engine_fault(run.engine_name)  # loads it: the time of a run is that of a warm engine
+    engine_fault(run.engine_name)  # loaded here, so that the time of a run is that of a warm engine
     started = clock.perf_counter()
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
     backend, scene, resolved = _statement(case, run.engine_name, run.support, settings, step)
@@ -207,7 +207,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
     }
     if scene.restraint.is_active and not scene.support.guided:
-        # the base wanders from the anchor, and the tilt alone does not tell it
+        # the base moves off its anchor, so the tilt alone does not give the elongation
         sampled["elongation"] = table["elongation"] * scale.length
     if scene.rolling_resistance > 0.0:
         sampled["energy_lost"] = table["energy_lost"] * scale.energy
@@ -239,7 +239,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
 
 
 def _facts_of_terms(case: Case, recorder: Recorder, scale: Scale) -> Iterator[Diagnostic]:
-    """Facts of a tendon that would have yielded, in the swing after the end too, and of columns left out."""
+    """Diagnostics of a tendon beyond its yield force, also after the end, and of columns left out."""
     tendon = case.tendon
     if tendon is not None and tendon.yield_force is not None and not math.isnan(recorder.yield_time):
         elongation = recorder.elongation * scale.length
@@ -247,7 +247,7 @@ def _facts_of_terms(case: Case, recorder: Recorder, scale: Scale) -> Iterator[Di
         time = recorder.yield_time * scale.time
         yield Diagnostic(code="tendon_yield", time=time, size=size, bound=tendon.yield_force)
     columns = case.cylinder.columns if case.cylinder.slab_mass_ratio else 1
-    if columns > 1:  # one stands for all
+    if columns > 1:  # one column stands for all
         yield Diagnostic(code="one_column", size=columns)
 
 
@@ -255,7 +255,7 @@ def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:
     """Turning points (k, 4): time [s], tilt, rolling angle [rad], 1 for a maximum and -1 for a minimum."""
     points = filter_noise_swings([point for point in recorder.points if point.time <= recorder.end], _SWING)
     if scene.start.standing and points and not points[0].is_maximum:
-        del points[0]  # where it lifted off: the tilt of one that stands turns nowhere
+        del points[0]  # the uplift is no turning point of a standing cylinder
     rows = [
         (point.time * scale.time, point.tilt, point.rolling_angle, 1.0 if point.is_maximum else -1.0)
         for point in points
@@ -281,7 +281,7 @@ def _peak(recorder: Recorder, outcome: str, rows: Array) -> float:
     if outcome == "overturned":
         return OVERTURNED_TILT
     maxima = [point.tilt for point in recorder.points if point.is_maximum and point.time <= recorder.end]
-    # a tilt that still rises at the end is largest in its last sample
+    # a tilt that still grows at the end is largest in its last sample
     return max([recorder.peak, float(rows[-1, 1]), *maxima])
 
 
@@ -314,7 +314,7 @@ def resolved_settings(
 
 @contextlib.contextmanager
 def open_scene(case: Case, engine: str, support: str, settings: Settings) -> Iterator[Stepper]:
-    """Open the scene of a case as `simulate` does at its default step, for who wants to step it alone.
+    """Open the scene of a case as `simulate` does at its default step, for a caller that steps it alone.
 
     Parameters
     ----------
@@ -378,8 +378,8 @@ def diagnostics(
         yield Diagnostic(
             code=recorder.failure, time=recorder.end_time * unit_time, detail="; ".join(recorder.warnings)
         )
-    # what never happened has the time NaN, which is no time before the end
-    # what slides must slip, and friction takes its energy
+    # an event that never happened has the time NaN, which is never before the end; a slide must slip, and
+    # friction takes its energy
     slides = recorder.mode == SLIDES
     for code, time in (
         ("slip", math.nan if slides else recorder.slip_time),
@@ -400,7 +400,7 @@ def diagnostics(
         yield Diagnostic(code="undecided", time=end * unit_time)
     if recorder.unsolved:
         yield Diagnostic(code="solver", size=recorder.unsolved, bound=recorder.looks)
-    if slides:  # it never uplifts, and where contact trembles or lets it, the mode tells
+    if slides:  # a slide never uplifts, and where contact trembles, its mode tells
         return
     if recorder.uplift is not None and recorder.missing_load > EARLY:
         yield Diagnostic(
@@ -408,12 +408,12 @@ def diagnostics(
         )
     close = passes[~passes["resolved"]]
     if recorder.uplift is not None and not recorder.energy.moves:
-        # it opened, and closed before it had moved: a pass through upright, after which no motion is left
+        # a base that closed again before it had moved: a pass through upright with no motion after it
         yield Diagnostic(
             code="unresolved_pass", time=recorder.uplift[0] * unit_time, size=1, bound=resolution
         )
         return
-    # a motion that only grows has no turning point before the last step
+    # a tilt that only grows has no turning point before the last step
     last = TurningPoint(float(recorder.last_row[0]), recorder.last_value("tilt"), 0.0, is_maximum=True)
     faint = negligible_uplifts([*recorder.points, last], resolution, recorder.rests.rests())
     if unresolved := sorted([*close["time"], *(unit_time * opened for opened in faint)]):

@@ -21,12 +21,12 @@ from .protocol import Engine, Stepper
 from .recorder import Recorder
 from .scene import Array, Scene
 
-_CHUNK = 10_000  # steps between two looks at the run: a second of the reference scene, 3 MB of states
+_CHUNK = 10_000  # steps between two checks of the run: a second of the reference scene, 3 MB of states
 _CHUNK_BEYOND = 2_000  # the same after the end, where most swings turn back within a second
-# Times of growth by e next to the balance that a motion is followed for: what turns or falls no sooner is
-# nearer to the balance than 3e-7, where an engine knows it no better.
+# Times of growth by e next to the balance for which a motion is followed: one that turns or falls no sooner
+# is within 3e-7 of the balance, the accuracy of an engine.
 LONGEST = 15.0
-# [rad] by which the tilt turns back; contact that lets go for a step and comes back makes 1e-7
+# [rad] decrease of the tilt that counts as a turn; contact lost for a step gives 1e-7
 _TURN = 1e-6
 # Drift of a tilt in that time, over its distance from either end. A wobble at 0.1 and 0.5 alpha, where it is
 # stable, drifts by 2e-5 at most in MuJoCo and Drake (tan alpha 0.1 to 1, R 1 to 30 m), by 3e-3 in Rapier,
@@ -43,7 +43,7 @@ def run_steps(
     sample_step: float,
     progress: Progress | None,
 ) -> Recorder:
-    """Step a run to its end, and return its recorder: `recorder`, or a continued one that saw a later end.
+    """Step a run to its end, and return its recorder: `recorder`, or one continued to a later end.
 
     `sample_step` is that of samples after the end [s], in the scene.
     """
@@ -95,8 +95,7 @@ def _follow(
         if top is not None or ahead.resting:
             break
         acceleration[0] = at_pose[0] = 0.0
-    # a steady wobble, which keeps its tilt below the balance, has no maximum to come, nor has what leans on a
-    # wall beyond it
+    # a steady wobble below the balance has no maximum to come, nor has a body against a wall beyond it
     keeps = abs(ahead.last_value("tilt") - start.tilt) < _STEADY * min(
         start.tilt, abs(scene.balance_tilt - start.tilt)
     )
@@ -122,7 +121,7 @@ def _has_turned(recorder: Recorder, since: float) -> bool:
 
 
 def _maximum(start: TurningPoint, recorder: Recorder) -> TurningPoint | None:
-    """Return the first maximum after `start` from which the tilt has fallen."""
+    """First maximum after `start` from which the tilt has decreased."""
     later = [point for point in recorder.points if point.time > start.time]
     tilt = recorder.last_value("tilt")
     for point in filter_noise_swings([start, *later], _TURN):

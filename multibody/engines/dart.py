@@ -94,10 +94,10 @@ def quaternions(vectors: Array, spin: float) -> Array:
     return np.column_stack([w * c + z * s, x * c - y * s, y * c + x * s, z * c - w * s])
 
 
-_LEANS = 1e-8  # [rad] from which a lean has a direction that is not of what stood
-_OPEN = 5e-8  # [rad] lean at which the base is open; standing it stays below 5e-9, landed below 3e-8
-# eccentricities of the load: from the first, of b, or of the friction, the scene follows it, at the second,
-# of b, the base may open
+_LEANS = 1e-8  # [rad] tilt above which its direction is that of a motion, not noise of standing
+_OPEN = 5e-8  # [rad] tilt at which the base is open; standing it stays below 5e-9, landed below 3e-8
+# eccentricities of the load: the scene turns with it from the first, of b, or of the friction, and the base
+# may open from the second, of b
 _LOADED, _OPENING = 0.5, 0.999
 # [rad] between the scene and the load of a base that slides: to turn the scene costs more than a step
 _OFF_LOAD = 0.02
@@ -134,7 +134,7 @@ class _DartStepper(Leapfrog):
         self._slab_height, self._slab_velocity = 2.0 * float(position[2]), 2.0 * velocity
         self._set_pose(start.quaternion, position, velocity, spin)
         if not start.standing:
-            # leapfrog starts half a step back: a trial step shows the acceleration
+            # leapfrog starts half a step back: a trial step gives the acceleration
             axis = axis_of(start.quaternion[None])[0]
             self._pull_tendon(position.tolist(), axis.tolist())
             self._step_on([0.0, 0.0, 0.0])
@@ -211,7 +211,7 @@ class _DartStepper(Leapfrog):
         return contact_counts(self._world.getLastCollisionResult().getNumContacts())
 
     def _loop(self, acceleration: list[list[float]]) -> list[list[float]]:
-        """Step; return rotation vector, position and heading of the scene after each step."""
+        """Step in a loop; return rotation vector, position and heading of the scene after each."""
         # local names, because this is a loop over steps in Python
         body = self._scene.body
         get, pull, slab = self._joint.getPositions, self._world.setGravity, self._slab
@@ -225,8 +225,8 @@ class _DartStepper(Leapfrog):
         tipping, tied = self._scene.tipping_gravity, self._scene.restraint.is_active
         friction = self._scene.friction * self._scene.pressing_gravity / tipping
         followed = _LOADED * min(1.0, friction * arm)
-        # where friction gives way before the base opens, it slides on four contacts: those of the rim solver
-        # take its hundreds of sweeps in every step, for no motion that could follow
+        # a base whose friction is exceeded before it opens slides on four contacts: with those of the rim the
+        # solver takes hundreds of sweeps in every step, for no gain
         opens = friction * arm > _OPENING
         turn_x, turn_y = cosine(heading), sine(heading)
         spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)
@@ -240,7 +240,7 @@ class _DartStepper(Leapfrog):
         for ax, ay, az in acceleration:
             x, y, z, away_x, away_y, height = row
             angle = root(x * x + y * y + z * z)
-            # also false for what is not a number
+            # NaN fails the comparison, too
             if not angle + abs(away_x) + abs(away_y) + abs(height) < far:
                 self._lost = True
                 return rows + [[math.nan] * 7] * (len(acceleration) - len(rows))
@@ -265,7 +265,7 @@ class _DartStepper(Leapfrog):
             if closed:
                 # friction is the whole load of a sliding base
                 load = min(math.hypot(ax, ay) / (tipping + az), friction) * arm
-                # a landed base leans as far as it has sunk, and does not open
+                # a landed base tilts by its penetration, and does not open
                 self._use_for(opening=opens and (load > _OPENING or (lean > _OPEN and not lies)))
                 # a load pushes against the acceleration
                 along = math.atan2(axis_y, axis_x) + heading if lean > _LEANS else math.atan2(-ay, -ax)
@@ -278,7 +278,7 @@ class _DartStepper(Leapfrog):
                     axis_x, axis_y = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i)
             else:
                 axis_z = 1.0 - 2.0 * (i * i + j * j)
-                # a cylinder on its side is held by two points
+                # a cylinder on its side is supported at two points
                 if self._open != (axis_z > _SIDE):
                     self._use_for(opening=axis_z > _SIDE)
                 # friction takes the rim to the velocity of the ground, here beyond zero by the overshoot
@@ -319,7 +319,7 @@ class _DartStepper(Leapfrog):
         body.addExtForce(force)
 
     def _step_on(self, beyond: list[float]) -> None:
-        """Take a step with an added velocity of the slab, and subtract it again afterwards."""
+        """Take a step with an added velocity of the slab, and subtract it again."""
         slab = self._slab
         if slab is None:
             self._world.step()
@@ -331,13 +331,13 @@ class _DartStepper(Leapfrog):
         self._slab_height += self._step * float(self._slab_velocity[2])
 
     def _use_for(self, *, opening: bool) -> None:
-        """Take the solver for a base that is open, or about to open; or for one that stands."""
+        """Choose the solver for a base that is open or about to open, or for a standing one."""
         if opening != self._open:
             self._open = opening
             self._use(self._rim_solver if opening else self._flat_solver)
 
     def _turn(self, heading: float) -> None:
-        """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
+        """Rotate the x axis of the scene to an azimuth [rad], and its vectors back."""
         angle, self._heading = self._heading - heading, heading
         row = self._joint.getPositions()
         quaternion = quaternions(row[None, :3], _SPIN)[0]

@@ -68,7 +68,7 @@ _version = cache(version)  # reading it takes as long as a hundred steps
 
 
 class Leapfrog:
-    """Scene whose new velocity moves the pose, so that the poses give the velocities.
+    """Scene stepped by leapfrog, whose velocities follow from its poses.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Leapfrog:
         self._position, self._quaternion = scene.start.position, scene.start.quaternion
 
     def warnings(self) -> str:
-        """Return none: the engine does not warn."""
+        """No warning: the engine does not warn."""
         return ""
 
     def _steps_to(
@@ -107,5 +107,5 @@ class Leapfrog:
 
 
 def contact_counts(contacts: int) -> SceneCounts:
-    """Return the counts of a step of one body: a normal and two directions of friction for each contact."""
+    """Constraint counts of a step of one body: a normal and two directions of friction for each contact."""
     return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)

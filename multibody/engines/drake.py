@@ -89,7 +89,7 @@ _POINT_SIZE = 1e-9  # radius over b; a sphere this small reaches out of the rim 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class DrakeScene:
-    """Ground, cylinder and slab, if there is one, and what a step of them is solved by.
+    """Ground, cylinder and slab, if there is one, with the solver of their steps.
 
     Vectors of the cylinder are followed by those of the slab, which has places and forces, and does not turn.
 
@@ -117,7 +117,7 @@ class DrakeScene:
     gravity: Array
 
     def solve(self, state: Array, applied: Array) -> tuple[Array, Array]:
-        """Solve the step from a state: quaternion, position, angular velocity and velocity.
+        """Solve a step from a state: quaternion, position, angular velocity and velocity.
 
         Returns
         -------
@@ -159,7 +159,7 @@ def make_scene(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene
     names = {"lagged": kinds.kLagged, "similar": kinds.kSimilar, "tamsi": kinds.kTamsi, "sap": kinds.kSap}
     plant.set_discrete_contact_approximation(names[settings.approximation])
     plant.set_stiction_tolerance(settings.stiction_tolerance)
-    plant.SetUseSampledOutputPorts(False)  # an output then solves the step that is ahead
+    plant.SetUseSampledOutputPorts(False)  # an output then solves the next step
     transverse, axial = shape.transverse_inertia, shape.axial_inertia
     inertia = RotationalInertia(transverse, transverse, axial)
     origin: Any = np.zeros(3)
@@ -210,7 +210,7 @@ def make_scene(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene
 
 
 def _add_slab(plant: Any, graph: Any, contact: Any, mass: float) -> None:
-    """Add a body on three slides, and a half space on it that looks down."""
+    """Add the slab, a body on three slides with a half space below it."""
     from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, HalfSpace
     from pydrake.math import RigidTransform, RotationMatrix
     from pydrake.multibody.tree import PrismaticJoint, SpatialInertia
@@ -231,7 +231,7 @@ def _add_slab(plant: Any, graph: Any, contact: Any, mass: float) -> None:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep a warning that no half space touches a deformable body off the standard error."""
+    """Suppress a warning on standard error that no half space touches a deformable body."""
     logger = logging.getLogger("drake")
     level = logger.level
     logger.setLevel(logging.ERROR)
@@ -242,8 +242,8 @@ def _quiet() -> Iterator[None]:
 
 
 _FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder itself is not found below 1e-3
-_LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
-_LOADED = 0.5  # eccentricity of the load over b from which the scene follows it
+_LEANS = 1e-8  # [rad] tilt above which it has a direction; a standing cylinder tilts by 1e-9
+_LOADED = 0.5  # eccentricity of the load over b above which the scene turns with it
 
 _FACTS = EngineFacts(
     title="Drake",
@@ -265,7 +265,7 @@ class _DrakeStepper(Leapfrog):
         self._last = self._standing  # plant that took the last step
         self._overshoot = settings.friction_damping - 1.0
         self._warning = ""
-        self._spun = 0.0  # angle about its axis that has been taken off the cylinder [rad]
+        self._spun = 0.0  # rotation about its axis removed from the cylinder so far [rad]
         start = scene.start
         # quaternion and position: floats, since the loop over steps in Python reads each of them
         place = [*start.quaternion.tolist(), *(start.position - [0.0, 0.0, self._depth]).tolist()]
@@ -278,10 +278,10 @@ class _DrakeStepper(Leapfrog):
         self._place, self._velocity = place, velocity
         self._rim = _Rim.of(place, scene.body)
         self._sinks = math.nan
-        # velocity of the frame in which the ground keeps still in a step, and of that of the slab [m/s]
+        # velocity of the frame in which the ground is at rest during a step, and of that of the slab [m/s]
         self._frame = np.zeros(len(velocity) - 3)
         if not start.standing:
-            # leapfrog starts half a step back: a trial step shows the acceleration
+            # leapfrog starts half a step back: a trial step gives the acceleration
             self._advance_once(self._pull_of_tendon(np.zeros_like(velocity)))
             self._place, self._velocity = place, 1.5 * velocity - 0.5 * self._velocity
 
@@ -299,7 +299,7 @@ class _DrakeStepper(Leapfrog):
         return contact_counts(self._last.count_contacts())
 
     def _caught(self, ax: float, ay: float, az: float) -> list[float]:
-        """Take one step, if Drake can: it raises where the state is not finite or nothing converges."""
+        """Take one step; a state that is not finite or a solver that fails ends the run with its message."""
         if not self._warning:
             try:
                 return self._one(ax, ay, az)
@@ -323,13 +323,13 @@ class _DrakeStepper(Leapfrog):
         return [*self._place, self._heading, self._spun]
 
     def _next_frame(self, before: _Rim, after: _Rim, rise: float) -> Array:
-        """Return the velocity of the frame of the next step: up as the rim sinks, and against its slip."""
+        """Velocity of the frame in the next step: up as the rim sinks, and against its slip."""
         rolls = before.lean > _LEANS and before.depth > 0.0 and before.goes_on_to(after)
         sinks = (after.depth - before.depth) / self._step + rise if rolls else math.nan
-        # where it sinks by next, from the last two steps
+        # sink in the next step, extrapolated from the last two
         ahead, self._sinks = 2.0 * sinks - self._sinks, sinks
         heave = ahead if math.isfinite(ahead) else 0.0
-        # a base that lands would be set in motion by it
+        # a landing base would be set in motion by the correction
         x = y = top_x = top_y = 0.0
         if rolls:
             velocity, overshoot = self._velocity.tolist(), self._overshoot
@@ -343,7 +343,7 @@ class _DrakeStepper(Leapfrog):
         return np.array([x, y, heave, top_x, top_y, 2.0 * heave][: len(self._frame)])
 
     def _force(self, ax: float, ay: float, az: float) -> Array:
-        """Return torque and forces of a step: of the guide, and of an acceleration of the ground."""
+        """Torque and forces of a step: those of the guide, and of an acceleration of the ground."""
         c, s = math.cos(self._heading), math.sin(self._heading)
         push = [-c * ax - s * ay, s * ax - c * ay, -az]
         if self._share > 0.0:
@@ -358,7 +358,7 @@ class _DrakeStepper(Leapfrog):
         return self._pull_of_tendon(np.array([*couple, *push]))
 
     def _pull_of_tendon(self, force: Array) -> Array:
-        """Return torque and forces of a step with those of the tendon."""
+        """Torque and forces of a step with those of the tendon."""
         restraint, rim = self._scene.restraint, self._rim
         if restraint.is_active:
             _, x, y, _, *place = self._place[:7]
@@ -387,12 +387,12 @@ class _DrakeStepper(Leapfrog):
         length = math.hypot(*turned)
         if not math.isfinite(length):
             raise RuntimeError("the orientation is not finite")
-        # the rate times the step makes it longer each time
+        # the rate times the step extrapolates its elongation
         moved = [at + step * by for at, by in zip(position, speed, strict=True)]
         self._place = [*(each / length for each in turned), *moved]
 
     def _turn_point_below(self, ax: float, ay: float, az: float) -> None:
-        """Turn a point of the rim to the lowest place of a nearly flat base, or to where it is loaded."""
+        """Rotate a point of the rim to the lowest place of a nearly flat base, or to its load."""
         rim, body = self._rim, self._scene.body
         load = _LOADED * body.base_radius * (self._scene.gravity + az)
         if rim.lean > _LEANS:
@@ -401,7 +401,7 @@ class _DrakeStepper(Leapfrog):
             self._turn(math.atan2(-ay, -ax))
 
     def _turn(self, heading: float) -> None:
-        """Turn the x axis of the scene into an azimuth [rad], and that of the cylinder, which is round.
+        """Rotate the x axes of the scene and of the cylinder, which is round, to an azimuth [rad].
 
         The vectors of the scene turn back.
         """
@@ -466,13 +466,13 @@ class _Rim(NamedTuple):
         return x - spin_y * self.down - spin_z * along_y, y + spin_x * self.down + spin_z * along_x
 
     def goes_on_to(self, after: _Rim) -> bool:
-        """Whether the cylinder stays on its side of upright."""
+        """Whether the next pose is on the same side of upright."""
         return self.axis_x * after.axis_x + self.axis_y * after.axis_y > 0.0
 
 
 class DrakeEngine(Declared):
     """Drake: multibody plant in discrete time, half space, cylinder with points on its rim."""
 
-    package, settings_type, facts = "drake", DrakeSettings, _FACTS  # its points of the rim carry a flat base
+    package, settings_type, facts = "drake", DrakeSettings, _FACTS  # points of its rim carry a flat base
     stepper_type = _DrakeStepper
     sliding = MappingProxyType({"approximation": "tamsi"})

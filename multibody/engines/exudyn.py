@@ -60,7 +60,7 @@ class ExudynSettings(EngineSettings):
 
     @staticmethod
     def defaults(time_step: float) -> dict[str, float]:
-        """Return none: no default depends on the time step."""
+        """No default depends on the time step."""
         return {}
 
 
@@ -110,7 +110,7 @@ class _ExudynStepper:
 
     @property
     def hold_centre(self) -> float:
-        """The force at the end of a step is the mean about that time: both rules take it at both ends."""
+        """Half a step: the force at the end of a step is a mean about that time, taken at both ends."""
         return 1.0
 
     def advance(self, acceleration: Array) -> Steps:
@@ -123,7 +123,7 @@ class _ExudynStepper:
             self._check_upright(rows)
         place, turn, velocity, rates = np.split(rows, (3, 7, 10), axis=1)
         quaternion = self._start.quaternion + turn
-        # the norm is held up to the tolerance of the iteration
+        # normalised to the tolerance of the iteration
         quaternion /= np.linalg.norm(quaternion, axis=1)[:, None]
         spin = _spin(quaternion, rates)
         before, self._last = self._last, (velocity[-1], spin[-1])
@@ -132,15 +132,15 @@ class _ExudynStepper:
         )
 
     def warnings(self) -> str:
-        """Return why the run cannot go on, if it cannot."""
+        """Message of the fault that ended the run, if there is one."""
         return self._warning
 
     def counts(self) -> SceneCounts:
-        """Return the counts of a step: the joint, three constraints on the velocity of one point."""
+        """Constraint counts of a step: three of the joint on the velocity of one point."""
         return SceneCounts(degrees_of_freedom=6, contacts=0, constraint_rows=3)
 
     def _check_upright(self, rows: Array) -> None:
-        """Give up the rows (n, 14) from the one on that has jumped over upright."""
+        """Drop the rows (n, 14) from the first that has jumped over upright."""
         leans = np.vstack([self._lean, _leans(self._start.quaternion + rows[:, 3:7])])
         self._lean = leans[-1]
         # more than a quarter turn in one step: the step is longer than twice the distance from upright
@@ -152,7 +152,8 @@ class _ExudynStepper:
     def _integrate(self, acceleration: Array) -> Array:
         """Rows (n, 14) of Euler coordinates and their rates after each step; fewer where a step fails."""
         forces = (-acceleration).tolist()
-        # the first step starts with the force of its end, which is second order; none before would be first
+        # the first step starts with the force of its end, which is second order; a zero force would be first
+        # order
         self._forces = [self._force_now or forces[0], *forces]
         self._force_now = self._forces[-1]
         integration = self._how.timeIntegration
@@ -169,7 +170,7 @@ class _ExudynStepper:
             )
         except (RuntimeError, ValueError):
             self._warning = "Newton's iteration did not converge"
-        # accelerations go on from one call to the next
+        # accelerations continue from one call to the next
         integration.generalizedAlpha.computeInitialAccelerations = False
         stored = [self._system.GetSensorStoredData(sensor) for sensor in self._sensors]
         # the first row is the start; the first column the time
@@ -186,7 +187,7 @@ class _ExudynStepper:
         def add_body(
             mass: float, inertia: list[float], pose: list[float], rates: list[float]
         ) -> tuple[int, int]:
-            """Return the numbers of the node and the object of a rigid body under gravity and excitation."""
+            """Numbers of the node and the object of a rigid body under gravity and excitation."""
             node = system.AddNode(
                 items.NodeRigidBodyEP(
                     referenceCoordinates=pose, initialCoordinates=[0.0] * 7, initialVelocities=rates
@@ -235,7 +236,7 @@ class _ExudynStepper:
             system.AddObject(items.ObjectJointGeneric(markerNumbers=both, constrainedAxes=[0, 0, 0, 1, 1, 1]))
         tendon = scene.restraint
         if tendon.is_active:
-            # the rims do not slip, so both gaps open alike, and each has its share of the tension
+            # the rims do not slip, so both gaps open alike and each has its share of the tension
             height = body.mass_centre_height
             gaps = [[(ground, [0.0, 0.0, -tendon.depth]), (cylinder, [0.0, 0.0, -height])]]
             if share > 0.0:
@@ -296,7 +297,7 @@ def _leans(quaternion: Array) -> Array:
 
 
 def _means(first: Array, values: Array) -> Array:
-    """Mean over each step of what is known at its ends: `first` (3,), then `values` (n, 3)."""
+    """Mean over each step of a quantity at its ends: `first` (3,), then `values` (n, 3)."""
     return np.asarray(0.5 * (np.vstack([first, values[:-1]]) + values))
 
 

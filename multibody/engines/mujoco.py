@@ -24,19 +24,20 @@ if TYPE_CHECKING:
     from mujoco import rollout
 
 _STANDING_BLOCK = 20  # steps between two looks at whether a standing cylinder has uplifted
-# Lean up to which a corner that is turned under it at each step carries a cylinder better than its rim does
-# [rad]: the rounding of the rim's depth, 1e-16 b/lean, makes the rim hop where it is a share of the depth
-# itself, and each hop slips. Corners that stay where they are would be a polygon.
+# Tilt up to which a corner, turned under it at each step, carries a cylinder better than its rim [rad]: the
+# rim's depth is rounded by 1e-16 b/tilt, which makes the rim hop where it is a share of the depth itself, and
+# each hop slips. Fixed corners would be a polygon.
 _RISEN = 1e-4
-# the same over the depth of a single corner under the weight, over b: what stands leans by up to a sixteenth
+# the same over the depth of a single corner under the weight, over b: a standing cylinder tilts by up to a
+# sixteenth of it
 _RISEN_DEPTHS = 1000.0
-_LEANS = 1e-8  # [rad] from which a lean has a direction, which a corner follows instead of the load
+_LEANS = 1e-8  # [rad] tilt above which a corner follows its direction instead of the load
 # eccentricities of the load over b: from the first a corner follows it, from the second at every step, and on
 # the four corners of the first prism alone, early enough for the change to die away before the base opens
 _LOADED, _OPENING = 0.5, 0.98
 _LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
 _FREE = 7  # coordinates of a free body
-# damping ratios of a rim that is not followed, and of one that closes in a plane
+# damping ratios of a rim without a corner that follows it, and of one in a plane
 _ROLLING, _CLOSING = 2.0, 4.0
 _STOPPING = 500.0  # [1/s] rate at which friction stops a base that slides, at the reference size
 _SLIDING: Settings = {
@@ -46,11 +47,11 @@ _SLIDING: Settings = {
     "points_softness": 1.0,
     "contact_damping_ratio": 3.0,
 }
-# A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
-# under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
+# A standing cylinder also tilts where it runs into a wall, or hops while it slides: a tilt means uplift only
+# under a load on its rim, or where it is far larger.
 _ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # eccentricity over b, and tilt [rad]
 
-_INTEGRATORS = ("implicitfast", "implicit", "RK4", "discrete")  # beside the default
+_INTEGRATORS = ("implicitfast", "implicit", "RK4", "discrete")  # besides the default
 _FACTS = EngineFacts(
     title="MuJoCo",
     step_time=8e-6,
@@ -69,7 +70,7 @@ _FACTS = EngineFacts(
 
 
 def _chosen(scene: Scene, given: Settings) -> Settings:
-    """Return the settings that follow from the mode to expect, and from whether the load is followed."""
+    """Settings that depend on the expected mode, and on whether corners follow the load."""
     in_plane = scene.mode == ROCKS_IN_PLANE and not scene.support.walls
     if scene.start.standing and scene.mode == SLIDES:
         return {**_SLIDING, "friction_damping": min(_STOPPING * scene.time_step, 1.0)}
@@ -145,7 +146,7 @@ class _MujocoStepper:
 
     @property
     def hold_centre(self) -> float:
-        """Leapfrog holds the force about the pose; RK4 over the step ahead."""
+        """Leapfrog takes the mean force about the pose, RK4 that over the next step."""
         return 0.0 if self._staggered else 0.5
 
     def advance(self, acceleration: Array) -> Steps:
@@ -156,7 +157,7 @@ class _MujocoStepper:
         control = np.zeros((steps, self._model.nu))
         push = -acceleration[:, self._columns]
         control[:, : len(self._columns)] = push
-        if self._model.nq > _FREE and self._columns:  # the last ones push the slab
+        if self._model.nq > _FREE and self._columns:  # the last forces act on the slab
             control[:, -len(self._columns) :] = push
         eccentricity = self._eccentricity(acceleration) if self._standing else None
         done = 0
@@ -181,18 +182,18 @@ class _MujocoStepper:
         return Steps(rows[1:, 1:4], quaternion[1:], *mean, touch, self._solver_failed())
 
     def warnings(self) -> str:
-        """Return the warnings of the engine."""
+        """Warnings of the engine."""
         return ", ".join(dict.fromkeys(self._warned + _warnings(self._data)))
 
     def counts(self) -> SceneCounts:
-        """Return the counts of the last step."""
+        """Counts of the last step."""
         data = self._data
         return SceneCounts(
             degrees_of_freedom=self._model.nv, contacts=int(data.ncon), constraint_rows=int(data.nefc)
         )
 
     def _solver_failed(self) -> bool:
-        # the rollout keeps what the last step did; an empty island has used no iteration
+        # the rollout stores the counts of the last step; an empty island has no iteration
         used = int(self._data.solver_niter.max())
         return used >= self._settings.iterations and self._settings.tolerance > 0.0
 
@@ -210,7 +211,7 @@ class _MujocoStepper:
             skip_checks=True,  # they take as long as four steps, and what stands takes single ones
         )
         if self._data.warning.number.any():
-            # an engine that fails repeats the last state that it could compute
+            # after a failure the engine repeats its last valid state
             frozen = (np.diff(rows[:, 1:8], axis=0, prepend=self._state[None, 1:8]) == 0.0).all(axis=1)
             rows[frozen & (np.cumsum(~frozen[::-1])[::-1] == 0), 1:] = np.nan
         self._state = rows[-1].copy()
@@ -223,12 +224,12 @@ class _MujocoStepper:
         return load
 
     def _follow_load(self, acceleration: Array, eccentricity: Array) -> int:
-        """Turn the prisms about the axis until a corner is under the load; leave them after the uplift.
+        """Rotate the prisms about the axis until a corner is under the load; stop after the uplift.
 
         Return for how many steps they stay so: for one where the base opens.
         """
         w, x, y, z = self._state[4:8].tolist()
-        axis = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)  # its horizontal part
+        axis = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)  # horizontal part of the axis
         lean, largest = float(np.hypot(*axis)), float(eccentricity.max())
         opens = largest > _OPENING or lean > _LEANS
         if lean > (self._risen if eccentricity[0] > _ON_RIM else max(self._risen, _RISEN_ANYHOW)):
@@ -239,16 +240,16 @@ class _MujocoStepper:
         # the first corner of a prism is an eighth of a turn from its x axis
         at = axis if lean > _LEANS else load
         half = 0.5 * (np.arctan2(at[1], at[0]) - 0.25 * np.pi + self._turns)
-        turned = self._model.geom_quat  # about the vertical, so without the other two components
+        turned = self._model.geom_quat  # rotated about the vertical, so its other two components are zero
         turned[self._prisms, 0], turned[self._prisms, 3] = np.cos(half), np.sin(half)
-        # neighbours that share the load of the last corner would let the base lean before it opens
+        # neighbours that share the load of the last corner would let the base tilt before it opens
         self._model.geom_pos[self._prisms[_LAST_PRISMS:], 2] = self._middle + (
             _OUT_OF_REACH if opens else 0.0
         )
         return 1 if opens else len(acceleration)
 
     def _leave_prisms(self) -> None:
-        """Go on without what only a standing cylinder needs: its corners cost time and brush the ground."""
+        """Remove the contacts of a standing cylinder: its corners cost time and touch the ground."""
         import mujoco
 
         self._warned += _warnings(self._data)
@@ -258,14 +259,14 @@ class _MujocoStepper:
 
 
 def _stopped_clock() -> ctypes._CFunctionType:
-    """Return a C function that always says the same time: to read a clock takes a fifth of a step."""
+    """C function of a constant clock: reading a clock takes a fifth of a step."""
     return ctypes.CFUNCTYPE(ctypes.c_double)(("PyFloat_GetMax", ctypes.pythonapi))
 
 
 def _warnings(data: mujoco.MjData) -> list[str]:
     import mujoco
 
-    # as an array: one by one they cost a hundred steps
+    # one array: single numbers cost as much as a hundred steps
     return [
         mujoco.mjtWarning(int(index)).name.removeprefix("mjWARN_").lower()
         for index in np.flatnonzero(data.warning.number)
@@ -273,7 +274,7 @@ def _warnings(data: mujoco.MjData) -> list[str]:
 
 
 def _depth(scene: Scene, settings: MujocoSettings) -> float:
-    """Depth at which one contact carries weight and prestress [m]: what the impedance leaves its spring."""
+    """Depth of one contact under weight and prestress [m]: the share of the load on its spring."""
     time = settings.contact_time_constant / scene.unit_time
     return scene.pressing_gravity * time**2 * (1.0 - settings.impedance) / settings.impedance
 

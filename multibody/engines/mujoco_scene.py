@@ -109,16 +109,16 @@ class MujocoSettings(EngineSettings):
 
     @staticmethod
     def defaults(time_step: float) -> dict[str, float]:
-        """Return the defaults that depend on the time step [s]."""
+        """Defaults that depend on the time step [s]."""
         return EngineSettings.defaults(time_step) | {"contact_time_constant": 2.0 * time_step}
 
 
-# friction over load in hardness where friction is found afterwards: too soft to matter at first
+# friction over load in hardness, where friction is solved after the load: too soft to matter at first
 _FRICTION_AFTER = 1e-6
 _PRISMS = 12  # prisms in the scene file; four corners each
-# sagitta of the ellipsoid, over that at which a base rolls under its load by two radians a step. Flatter,
-# what uplifts in a plane at tan alpha 1 shakes out of it by 1e-7; above 1 no points are needed, but
-# the heel yields
+# sagitta of the ellipsoid, over that at which a base rolls under its load by two radians a step. With a
+# flatter one, planar uplift at tan alpha 1 leaves its plane by 1e-7; above 1 no points are needed, but the
+# heel yields
 _CROWN = 0.1
 _POINT = 1e-6  # radius of a point over b
 _SLAB_WIDTH, _SLAB_THICKNESS = 4.0, 0.5  # half of them, of the height and in m: wider than a column can fall
@@ -127,7 +127,7 @@ _SLAB_WIDTH, _SLAB_THICKNESS = 4.0, 0.5  # half of them, of the height and in m:
 def compile_scene(
     scene: Scene, settings: MujocoSettings, *, standing: bool, ring: RingSettings | None = None
 ) -> mujoco.MjModel:
-    """Return the compiled model of `scene`: its file, with what the case does not need taken out.
+    """Compiled model of `scene`, from its file without the parts that the case does not need.
 
     A `standing` cylinder rests on prisms, a tilted one on its rim; walls exist for the support ring only.
     """
@@ -151,7 +151,7 @@ def compile_scene(
     for name in ("guide_vertical", "guide_axial"):
         guide = spec.actuator(name)
         if guide is not None:
-            # guide_stiffness is in the time of the user
+            # guide_stiffness is in the user's unit of time
             guide.biasprm[1] = -settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
     return spec.compile()
 
@@ -162,17 +162,17 @@ def _set_options(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) ->
     option = spec.option
     option.timestep = scene.time_step
     option.gravity = [0.0, 0.0, -scene.gravity]
-    # set by name: not every version has each
+    # by name, as not every version has each
     option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{settings.integrator.upper()}")
     option.cone = getattr(mujoco.mjtCone, f"mjCONE_{settings.cone.upper()}")
     option.tolerance = settings.tolerance
     option.iterations = settings.iterations
     # a state that is not finite must reach the guard, not be replaced by the initial one
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
-    # one body is one island: to look for others takes a twentieth of a step; not every version has it
+    # one body is one island: the search for others takes a twentieth of a step; not every version has it
     option.disableflags |= getattr(mujoco.mjtDisableBit, "mjDSBL_ISLAND", 0)
     if settings.contact_time_constant < 2.0 * scene.time_step * scene.unit_time * (1.0 - 1e-9):
-        # the engine would silently lengthen what the user asked for
+        # the engine would silently lengthen a time constant of the user
         option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE
 
 
@@ -189,7 +189,7 @@ def _set_body(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 
 def _add_rim(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) -> None:
-    """Put a flat ellipsoid in the place of the rim, and points just inside it; under a slab on the top, too.
+    """Replace the rim by a flat ellipsoid with points just inside it; under a slab at the top, too.
 
     On an ellipsoid of sagitta c a base of radius b rolls as on a ball of radius b^2/c, with the circular
     frequency sqrt(g b^2/(c J)), J its inertia about the ground.
@@ -216,7 +216,7 @@ def _add_rim(spec: mujoco.MjSpec, scene: Scene, settings: MujocoSettings) -> Non
 
 
 def _add_tendon(spec: mujoco.MjSpec, shape: Body, tendon: Restraint) -> None:
-    """Stretch a tendon from its anchor to the base, and up the axis to the slab where there is one.
+    """Add a tendon from its anchor to the base, and up the axis to the slab where there is one.
 
     The actuator that is its prestress takes no control.
     """
@@ -238,7 +238,7 @@ def _add_tendon(spec: mujoco.MjSpec, shape: Body, tendon: Restraint) -> None:
 
 
 def _add_slab(spec: mujoco.MjSpec, scene: Scene, standing: bool) -> None:
-    """Put a slab that can only translate on the top; it lies on the first prism, or on the rim."""
+    """Add a slab that can only translate on the top, in contact with the first prism, or with the rim."""
     import mujoco
 
     shape = scene.body
@@ -261,8 +261,8 @@ def _add_slab(spec: mujoco.MjSpec, scene: Scene, standing: bool) -> None:
     if scene.restraint.is_active:
         slab.add_site(name="tendon_slab", pos=[0.0, 0.0, scene.restraint.depth - _SLAB_THICKNESS])
     spec.add_pair(geomname1="slab", geomname2="prism0" if standing else "cylinder")
-    # two convex bodies: their point of contact is sought, to rounding, and is one: what a face and a rim next
-    # to it have in common, which 4.0 looks for, is off by 4e-3 m at a tilt of 1e-4 rad
+    # two convex bodies: their one contact point is found by iteration, to rounding; the shared edge of a face
+    # and a rim, for which 4.0 searches, is off by 4e-3 m at a tilt of 1e-4 rad
     spec.option.ccd_tolerance, spec.option.ccd_iterations = 1e-16, 200
     spec.option.disableflags |= getattr(mujoco.mjtDisableBit, "mjDSBL_MULTICCD", 0)
 
@@ -286,14 +286,14 @@ def _set_contact(
             # the corners of all prisms stand evenly on the rim
             spec.geom(name).alt.euler = [0.0, 0.0, 90.0 * index / count]
     rim = settings.impedance if standing or not followed else settings.rolling_impedance
-    # friction stays as hard as it is on the corners
+    # friction is as hard as on the corners
     later = settings.noslip_iterations > 0
     spec.option.impratio = _FRICTION_AFTER if later else _yield(rim) / _yield(settings.impedance)
     spec.option.noslip_iterations, spec.option.noslip_tolerance = settings.noslip_iterations, 0.0
     for pair in spec.pairs:
         friction = scene.friction if ring is None or _bears(pair) else ring.ring_friction
         impedance = rim if _bears(pair) else settings.impedance
-        # the cone bounds the couple and the friction together, and what grips leaves less to the couple
+        # the cone bounds couple and friction together, so a friction in use leaves less to the couple
         rolling = scene.rolling_resistance if _bears(pair) else 0.0
         pair.friction = [friction, friction, 0.0, rolling, rolling]
         pair.condim = 6 if rolling else 3
@@ -301,8 +301,8 @@ def _set_contact(
         contact_time = softness * settings.contact_time_constant / scene.unit_time
         pair.solref = [contact_time, settings.contact_damping_ratio]
         pair.solimp = [impedance, impedance, 1e-3, 0.5, 2.0]
-        # two negative numbers are a stiffness, which friction has none of, and a damping; the engine divides
-        # the damping by the impedance
+        # a negative pair is a stiffness, which friction lacks, and a damping, which the engine divides by the
+        # impedance
         damping = settings.friction_damping * impedance / scene.time_step
         pair.solreffriction = [-1.0, -damping]
 
@@ -334,10 +334,10 @@ def _yield(impedance: float) -> float:
 
 
 _SECANT_STEPS = 30
-_STILL = 1e-9  # [m/s^2] acceleration left of the rim at the start
-# a rim that comes down is thrown back at any depth: the acceleration jumps where contact begins, and a secant
-# across the jump may end anywhere. What is so much worse than all before it is left, and what is so high [m]
-# that a tendon takes the place of the ground
+_STILL = 1e-9  # [m/s^2] remaining acceleration of the rim at the start
+# a rim that comes down rebounds at any depth: the acceleration jumps where contact begins, and a secant
+# across the jump may end anywhere. A step much worse than all before it is rejected, as is a height [m] at
+# which a tendon would replace the ground
 _LEAP, _HIGHEST = 2.0, 1e-5
 
 
@@ -350,7 +350,7 @@ def set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, staggere
     data.qpos[:3], data.qpos[3:7] = start.position, start.quaternion
     data.qvel[:3] = start.velocity
     data.qvel[3:6] = to_world(inverse[None], start.angular_velocity[None])[0]
-    # a slab has the velocity of the highest point of the top, and so it came to its place
+    # the slab has the velocity of the highest point of the top, also before the start
     data.qpos[7:] = 2.0 * (start.position - [0.0, 0.0, scene.body.mass_centre_height])[: model.nq - 7]
     data.qvel[6:] = 2.0 * start.velocity[: model.nv - 6]
     slab_height = data.qpos[9:].copy()

@@ -63,11 +63,11 @@ class PybulletSettings(EngineSettings):
 
 
 _POINT_SIZE = 1e-6  # size over b
-_LEAST = 1e-12  # friction of a pair, for a quotient
+_LEAST = 1e-12  # friction of a pair that stands for zero in a quotient
 
 
 def _friction_of_each(pair: float) -> float:
-    """Return the coefficient of cylinder and ground alike whose pair has the coefficient `pair` [-].
+    """Equal coefficients of cylinder and ground whose pair has the coefficient `pair` [-].
 
     Bullet takes the product of both, at most 10, so that neither is the rough one. A rim that slides feels
     2 to 5 % less friction than that; one that holds is not concerned.
@@ -77,7 +77,7 @@ def _friction_of_each(pair: float) -> float:
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Keep what Bullet prints from C, its build time and the like, off both standard streams."""
+    """Suppress the output of Bullet's C code, such as its build time, on both standard streams."""
     sys.stdout.flush()
     sys.stderr.flush()
     kept = [os.dup(stream) for stream in (1, 2)]
@@ -92,12 +92,13 @@ def quiet() -> Iterator[None]:
             os.close(original)
 
 
-_LEANS = 1e-7  # [rad] a cylinder that leans less has no lowest point to speak of
-_RESIDUAL = 1e-10  # squared residual of an iteration [m^2/s^2]; that of a standing cylinder is far below
-_RISEN = 1e-7  # [rad] lean from which the rim carries the cylinder as well as the point does
+_LEANS = 1e-7  # [rad] tilt below which the lowest point is noise
+_RESIDUAL = 1e-10  # squared residual of an iteration [m^2/s^2]; far above that of a standing cylinder
+_RISEN = 1e-7  # [rad] tilt above which the rim carries the cylinder as well as the point does
 _HAS_DIRECTION = 1e-9  # [rad]
-_LOADED = 0.5  # eccentricity of the load over b from which the scene follows it
-# steps between two looks at where a base slides to; [rad] off an axis and [m/s] from which the scene follows
+_LOADED = 0.5  # eccentricity of the load over b above which the scene turns with it
+# steps between two checks of the direction of a slide; [rad] off an axis and [m/s] from which the scene turns
+# with it
 _SLIDING_BLOCK, _OFF_SLIP, _SLIPS = 20, 0.02, 1e-4
 _POSE = 7  # numbers of a pose: position, and quaternion with the scalar last
 _NO_SPIN = (0.0, 0.0, 0.0)
@@ -121,7 +122,7 @@ class PybulletEngine(Declared):
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
-        """Open the scene at its start, in a client that is closed whatever happens."""
+        """Open the scene at its start, in a client that is closed also after an exception."""
         with quiet():
             import pybullet
 
@@ -150,7 +151,7 @@ class _PybulletStepper(Leapfrog):
         velocity, spin = start.velocity, start.angular_velocity
         self._set_pose(start.position, quaternion, velocity, spin)
         if not start.standing:
-            # leapfrog starts half a step back: a trial step shows the acceleration
+            # leapfrog starts half a step back: a trial step gives the acceleration
             self._pull_tendon(start.position.tolist(), quaternion.tolist())
             pybullet.stepSimulation(client)
             after, spin_after = map(np.array, pybullet.getBaseVelocity(self._body, client))
@@ -178,7 +179,7 @@ class _PybulletStepper(Leapfrog):
         return self._add_body(0.0, plane)
 
     def _add_cylinder(self) -> int:
-        """Make the cylinder, or while it stands the point on its rim from which it rises; return its number.
+        """Make the cylinder, or while it stands the point of its rim for the uplift; return its number.
 
         Under a slab it rises between two points, the other being the mirror of the first.
         """
@@ -208,7 +209,7 @@ class _PybulletStepper(Leapfrog):
         return self._add_body(
             1.0,
             outline,
-            # the pair has that of each body times the friction of the other
+            # the engine multiplies the coefficients of both bodies
             rollingFriction=scene.rolling_resistance / _friction_of_each(friction),
             localInertiaDiagonal=[shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia],
         )
@@ -216,13 +217,13 @@ class _PybulletStepper(Leapfrog):
     def _add_slab(self) -> int:
         """Make a slab that can only translate, a plane that looks down; return its number."""
         plane = self._bullet.createCollisionShape(self._bullet.GEOM_PLANE, physicsClientId=self._client)
-        # Bullet takes an inertia of none for infinite
+        # Bullet takes a zero inertia for infinite
         slab = self._add_body(self._scene.body.slab_mass_ratio, plane, localInertiaDiagonal=[0.0, 0.0, 0.0])
         self._put_slab(slab)
         return slab
 
     def _add_body(self, mass: float, shape: int, **dynamics: object) -> int:
-        """Make a body that nothing damps, restores or puts to sleep; return its number."""
+        """Make a body without damping, restitution and sleep; return its number."""
         bullet, client = self._bullet, self._client
         body = bullet.createMultiBody(mass, shape, physicsClientId=client)
         bullet.changeDynamics(
@@ -269,7 +270,7 @@ class _PybulletStepper(Leapfrog):
         return self._steps_to(rows[:, :3], np.roll(rows[:, 3:], 1, axis=1), heading, unsolved=self._unsolved)
 
     def _stand(self, acceleration: Array) -> tuple[float, ...]:
-        """Take one step of a cylinder that stands, or rises from a point of its rim; return the pose."""
+        """Take one step of a cylinder that stands, or uplifts from a point of its rim; return the pose."""
         bullet, client, (b, h) = self._bullet, self._client, self._lengths
         place, (x, y, z, w) = bullet.getBasePositionAndOrientation(self._body, client)
         axis_x, axis_y = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)
@@ -302,7 +303,7 @@ class _PybulletStepper(Leapfrog):
         return (*place, *turn)
 
     def _turn_to_slip(self) -> None:
-        """Turn the scene until the base slides along one of its axes, along which friction is Coulomb's."""
+        """Rotate the scene until the base slides along one of its axes, along which friction is Coulomb's."""
         bullet, client = self._bullet, self._client
         place, (x, y, z, w) = bullet.getBasePositionAndOrientation(self._body, client)
         velocity, spin = bullet.getBaseVelocity(self._body, client)
@@ -334,7 +335,7 @@ class _PybulletStepper(Leapfrog):
         bullet.applyExternalForce(body, -1, force, at, world, client)
 
     def _release_rim(self) -> None:
-        """Go on with the cylinder in place of the point of its rim; its pose is still to be set."""
+        """Replace the point of the rim by the cylinder; its pose is still to be set."""
         self._bullet.removeBody(self._body, self._client)
         self._standing = False
         self._body = self._add_cylinder()
@@ -352,7 +353,7 @@ class _PybulletStepper(Leapfrog):
         return contact_counts(len(self._bullet.getContactPoints(self._body, physicsClientId=self._client)))
 
     def _analyse(self, wanted: bool) -> None:
-        # done in every step it would cost a tenth
+        # checked in every step it would cost a tenth
         self._bullet.setPhysicsEngineParameter(
             reportSolverAnalytics=int(wanted), physicsClientId=self._client
         )
@@ -371,7 +372,7 @@ class _PybulletStepper(Leapfrog):
         return poses + last
 
     def _steps(self, gravity: Array) -> tuple[list[float], Sequence[Mapping[str, float]]]:
-        """Return the poses, all in a row, and what the last step reported.
+        """Poses in one row, and the report of the last step.
 
         Gravity is apparent, because rigid ground need not move.
         """
@@ -384,7 +385,7 @@ class _PybulletStepper(Leapfrog):
         slab, (slab_x, slab_y, slab_z) = self._slab, self._slab_velocity.tolist()
         atan2, sqrt, pull_tendon = math.atan2, math.sqrt, self._pull_tendon
         tied = self._scene.restraint.is_active
-        # numbers in one list, not tuples in one: those the garbage collector would go through again and again
+        # one list of numbers: the garbage collector would traverse a list of tuples again and again
         poses: list[float] = []
         beyond_x = beyond_y = 0.0
         report: Sequence[Mapping[str, float]] = ()
@@ -402,15 +403,15 @@ class _PybulletStepper(Leapfrog):
             ax, ay, az = 2.0 * across_x, 2.0 * across_y, 1.0 - 2.0 * xy
             sine = sqrt(ax * ax + ay * ay)
             if overshoot and sine > _LEANS:
-                # the slip velocity that the last step left at the rim of this pose; Bullet's friction
-                # takes the rim to the velocity of the ground, here beyond zero by the overshoot
+                # slip velocity at the rim of this pose after the last step; Bullet's friction takes the rim
+                # to the velocity of the ground, here beyond zero by the overshoot
                 (vx, vy, _), (wx, wy, wz) = velocities(body, client)
                 out, down = b * az / sine - h, h * az + b * sine
                 turn_x, turn_y = wy * down + wz * out * ay, wz * out * ax + wx * down
                 slip_x, slip_y = vx - turn_x, vy + turn_y
                 move(ground, (-overshoot * slip_x, -overshoot * slip_y, 0.0), _NO_SPIN, client)
                 if slab is not None:
-                    # the same on the slab, which keeps what it is moved by for this step alone
+                    # the same on the slab, whose added velocity is for this step alone
                     beyond_x = overshoot * (slab_x - vx - turn_x)
                     beyond_y = overshoot * (slab_y - vy + turn_y)
                     move(slab, (slab_x + beyond_x, slab_y + beyond_y, slab_z), _NO_SPIN, client)

@@ -28,11 +28,11 @@ from ..scene import Array, Scene
 from ..settings import Count, EngineSettings, Positive, Share, Small, one_of
 from .declared import Declared, Leapfrog, contact_counts
 
-_SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, it corrects the rest
-# [rad] lean from which the guide acts in full: its torque shakes a closed base, which friction holds as
-# well, and one that sets in at once gives a twist its energy
+_SLOP = 10.0  # depths of the rim that Rapier does not correct; after a landing it corrects the excess
+# [rad] tilt from which the guide acts in full: its torque shakes a closed base, which friction holds as well,
+# and a torque that sets in at once gives energy to a twist
 _OPEN = 2e-4
-_FASTEST_RISE = 1e-3  # [m/s] of a base that has landed deeper: taken back at once, it would be thrown back
+_FASTEST_RISE = 1e-3  # [m/s] correction of a base that has landed deeper: at once, it would be thrown back
 # half length of the disc over b: its far edge is clear of the ground until the side is down
 _HALF_DISC = 0.125
 _GUIDE = 0.05  # 2 h sqrt(stiffness of the guide); see `settings.GUIDE`: stiffer, it acts on a rounded twist
@@ -83,7 +83,7 @@ class RapierSettings(EngineSettings):
 
     @staticmethod
     def defaults(time_step: float) -> dict[str, float]:
-        """Return the defaults that depend on the time step [s]."""
+        """Defaults that depend on the time step [s]."""
         return {"contact_frequency": 0.1 / time_step, "guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0}
 
 
@@ -103,7 +103,7 @@ class _RapierStepper(Leapfrog):
         self._set_pose(position, start.quaternion, velocity, spin)
         self._put_slab(2.0 * float(position[2]), 2.0 * velocity)
         if not start.standing:
-            # leapfrog starts half a step back: a trial step shows the acceleration
+            # leapfrog starts half a step back: a trial step gives the acceleration
             after = np.array(self._loop([[0.0, 0.0, 0.0]])[0])
             if self._slab is not None:
                 reached = self._slab.linvel
@@ -126,7 +126,7 @@ class _RapierStepper(Leapfrog):
         return contact_counts(sum(len(manifold.points) for pair in pairs for manifold in pair.manifolds))
 
     def _loop(self, acceleration: list[list[float]]) -> list[list[float]]:
-        """Step; return position, quaternion, velocity and angular velocity after each step."""
+        """Run the loop over steps; return position, quaternion, velocity and angular velocity after each."""
         # local names, because this is a loop over steps in Python
         world, body, step, rotation = self._world, self._cylinder, self._world.step, self._rapier.Rotation3
         shape, time_step, gravity = self._scene.body, self._scene.time_step, self._scene.gravity

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 GROUP = "rockwobble.engines"
-# where none is named: it comes with every installation, and has every support
+# default engine: it comes with every installation, and has every support
 DEFAULT_ENGINE = "mujoco"
 
 
@@ -35,15 +35,15 @@ class EngineNotInstalledError(ValueError):
 
 
 class BrokenEngineError(ValueError):
-    """An engine that another package declares and that does not load."""
+    """Error of an engine declared by another package whose entry point does not load."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
     package: str
     remedy: str
-    loads: str = ""  # module that loads only where all of the package is there; by default its own
-    standard: bool = True  # comes with every installation of this package, where it has a wheel
+    loads: str = ""  # module that loads only in a complete installation of the package; by default its own
+    standard: bool = True  # whether it comes with every installation of this package, where it has a wheel
 
     @property
     def module(self) -> str:
@@ -54,7 +54,7 @@ _UNITS = {"rolling_resistance": " m"}  # units of terms of a case, for refusals
 # platforms of PyBullet; elsewhere DART takes its place in a default run
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _WHEELS = "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only"
-# by name: the module here, which has a class of that name
+# module here by name, with a class of that name
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
         # an uninstalled mujoco-core leaves an empty folder that can be imported
@@ -89,12 +89,12 @@ def standard_engines() -> tuple[str, ...]:
 
 
 def stand_in(name: str) -> str | None:
-    """Return the engine that takes the place of one that has no wheel here, in a default run or a suite."""
+    """Engine that replaces one without a wheel here, in a default run or a suite."""
     return "dart" if name == "pybullet" and not _WHEEL else None
 
 
 def own_engines() -> tuple[str, ...]:
-    """Return the names of our engines that run here: their packages are installed, and load."""
+    """Names of our engines that run here: their packages are installed, and load."""
     return tuple(name for name in _ENGINES if not engine_fault(name))
 
 
@@ -116,14 +116,14 @@ def available_engines() -> tuple[str, ...]:
 
 
 def _lack(name: str) -> str:
-    """Missing package of one of our engines and how to get it, to follow its name; empty if none."""
+    """Missing package of one of our engines and how to install it, worded to follow its name; or empty."""
     entry = _ENGINES[name]
     there = importlib.util.find_spec(entry.module.partition(".")[0]) is not None
     return "" if there else f"is not installed here: {entry.remedy}"
 
 
 def engine_fault(name: str) -> str:
-    """Return why an engine does not run here, to follow its name; empty if it does.
+    """Reason why an engine does not run here, worded to follow its name; empty if it does.
 
     Its package is imported, which takes some tenths of a second once. One that another package declares is
     installed, and loaded by that package.
@@ -138,7 +138,7 @@ def _load_failure(name: str) -> str:
     try:
         with quiet():
             importlib.import_module(_ENGINES[name].module)
-    # whatever a damaged package raises, it must not stop the other engines
+    # any exception of a damaged package, as it must not stop the other engines
     except Exception as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         return f"is installed and does not load: {reason}"
@@ -146,7 +146,7 @@ def _load_failure(name: str) -> str:
 
 
 def engine_named(name: str) -> Engine:
-    """Return the engine called `name`, whose facts are known whether it runs here or not.
+    """Engine called `name`, with its facts, whether it runs here or not.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def engine_named(name: str) -> Engine:
 
 
 def find_engine(name: str) -> Engine:
-    """Return the engine called `name`, which runs here.
+    """Engine called `name`, if it runs here.
 
     Parameters
     ----------
@@ -247,12 +247,12 @@ def _require_installed(name: str) -> None:
 
 
 def _declarations() -> dict[str, list[EntryPoint]]:
-    """Entry points of other packages by name, in alphabetical order; our names are taken."""
+    """Entry points of other packages by name, in alphabetical order, without the names of our engines."""
     from importlib.metadata import entry_points
 
     entries: dict[str, list[EntryPoint]] = {}
     for point in sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)):
-        # an installation may be found by two ways
+        # one installation may be on the path twice
         if point.name not in _ENGINES and point not in entries.get(point.name, []):
             entries.setdefault(point.name, []).append(point)
     return entries
@@ -264,7 +264,7 @@ def _load(name: str, points: list[EntryPoint]) -> Engine:
         raise BrokenEngineError(f"engine {name!r} is declared more than once, by {packages}: uninstall one")
     try:
         engine = points[0].load()()
-    # whatever an engine of somebody else raises, it must not stop the others
+    # any exception of a foreign engine, as it must not stop the others
     except Exception as error:
         reason = (str(error).splitlines() or [""])[0]
         raise BrokenEngineError(

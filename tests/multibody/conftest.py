@@ -1,4 +1,4 @@
-"""What engines are compared with: the reduced models, solved far more closely than an engine can be.
+"""References for engines: the reduced models, solved to a far smaller error than that of an engine.
 
 Their equations have tests of their own, against vectors and in forty digits (tests/reduced).
 """
@@ -43,7 +43,7 @@ def forced_response(
 
 
 def _is_exact(name: str) -> bool:
-    """Whether an engine serves any case, in double precision; in single precision it has its own tests."""
+    """Whether an engine runs every case in double precision; single precision has its own tests."""
     engine = find_engine(name)
     return engine.uplifts and engine.facts.rounding < 1e-12
 
@@ -70,7 +70,7 @@ def solve_free() -> Callable[..., Trace]:
 
 @pytest.fixture
 def run_release(solve_free: Callable[..., Trace]) -> Callable[..., tuple[Trace, Trace]]:
-    """A release at half of alpha in an engine, which tells how far it is, and the solution of its model."""
+    """Release at half of alpha in an engine, with its progress, and the solution of its model."""
 
     def run(
         engine: str, support: str, tan_alpha: float, *, duration: float, **options: Any

@@ -15,13 +15,13 @@ from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Trace
 from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, common_count, find_step
 
 ALPHA = 0.2
-# Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order
+# Richardson with a measured order is right within a factor; three is its error at the bounds of the order
 ESTIMATE = 3.0
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("support", "tan_alpha"), [("recess", 0.2), ("flat", 3.0)])
-def test_the_error_is_as_estimated(
+def test_the_actual_error_is_within_the_estimate(
     engine: str, support: str, tan_alpha: float, run_release: Callable[..., Any]
 ) -> None:
     run, exact = run_release(
@@ -43,7 +43,7 @@ def test_the_step_scales_with_size() -> None:
 
 
 def step_fact(run: Trace) -> Diagnostic:
-    """What the search for a step says of its end."""
+    """Result of the search for a step, from the diagnostics."""
     (fact,) = (fact for fact in run.facts if fact.code in ("settled", "unsettled"))
     return fact
 
@@ -51,7 +51,7 @@ def step_fact(run: Trace) -> Diagnostic:
 def search(
     tilt_of: Callable[[float], Any], tolerance: float = 1e-3, **kept: Any
 ) -> tuple[Trace, list[float]]:
-    """Find the step of a made-up engine; return the run and the steps that were tried."""
+    """Search with a synthetic engine; return the run and the steps that were tried."""
     steps: list[float] = []
 
     def attempt(step: float, _: Any) -> Trace:
@@ -92,16 +92,16 @@ def test_auto_step_is_unsettled_after_chance_events(code: str) -> None:
 def test_the_estimate_is_that_of_first_order(order: float) -> None:
     shape = np.sin(np.arange(100))
     run, steps = search(lambda step: 0.1 + 10.0 * (step / COARSEST) ** order * 2e-4 * shape, 2e-3)
-    # known from the third run on, when the order was measured
+    # unknown before the third run, from which on the order is measured
     assert len(steps) >= 3
     error = np.abs(run.tilt - 0.1).max()
-    # of second order it is three times what is left
+    # for second order it is three times the remaining error
     assert run.error_estimate == pytest.approx((2.0**order - 1.0) * error, rel=1e-6)
     assert step_fact(run).bound == pytest.approx(1.0, rel=1e-3)
 
 
 def test_halving_ends_where_it_no_longer_helps() -> None:
-    # converging at first, and then worse with each step
+    # converges at first, then diverges with each step
     level = {COARSEST: 8e-4, COARSEST / 2: 4e-4, COARSEST / 4: 2e-4, COARSEST / 8: 6e-4}
     run, steps = search(lambda step: np.full(50, 0.1 + level[step]), 1e-4)
     assert (step_fact(run).code, step_fact(run).detail) == ("unsettled", "no_closer")
@@ -139,7 +139,7 @@ def test_failed_steps_are_passed_over() -> None:
     assert step_fact(run).detail == "fails"
 
 
-def test_closeness_knows_an_end_before_the_other() -> None:
+def test_closeness_stops_at_the_earlier_end() -> None:
     whole, short = trace_of(np.full(50, 0.1)), trace_of(np.full(30, 0.1), outcome="overturned")
     assert closeness(whole, short, ALPHA) == Closeness(0.0, pytest.approx(0.29), pytest.approx(0.29))
 
@@ -164,6 +164,6 @@ def test_closeness_ends_at_the_last_pass_before_a_divergence() -> None:
         ({"time_step": 1e-4, "finest_step": 1e-4}, 'goes with time_step="extrapolated"'),
     ],
 )
-def test_what_is_refused(pier: Cylinder, arguments: dict[str, Any], line: str) -> None:
+def test_bad_settings_are_refused(pier: Cylinder, arguments: dict[str, Any], line: str) -> None:
     with pytest.raises(ValueError, match=line):
         multibody.simulate(Case(pier, initial=InitialState(0.1), duration=0.1), **arguments)

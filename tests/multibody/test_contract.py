@@ -1,4 +1,4 @@
-"""What an engine does beside its contract, which `rw.check` holds: interruption, closing, refusals."""
+"""Contract of an engine beyond the checks of `rw.check`: interruption, closing, refusals."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_a_trace_of_an_engine_is_complete_and_travels(engine: str) -> None:
 @pytest.mark.slow
 def test_progress_rises_to_one_and_interrupts(engine: str) -> None:
     seen: list[float] = []
-    # told after each second of the run
+    # one call after each second of the run
     case = Case(PIER, initial=RELEASE, duration=2.1)
     multibody.simulate(case, engine=engine, progress=seen.append)
     assert seen == sorted(seen)
@@ -65,7 +65,7 @@ def test_clients_are_closed_and_a_divergence_writes_nothing(
     with pytest.raises(RuntimeError):
         multibody.simulate(case, engine=engine, progress=fail)
     assert (mujoco.get_mju_user_warning(), mujoco.get_mjcb_time()) == before
-    # one that diverges is where MuJoCo would write a file
+    # a diverging run, in which MuJoCo would write a file
     multibody.simulate(case, engine=engine, guide_stiffness=1000000000000.0)
     if engine == "pybullet":
         import pybullet
@@ -111,7 +111,7 @@ def test_a_squat_cylinder_falls_flat_and_rests(engine: str, time_step: float | N
     case = Case(squat, initial=InitialState(0.2 * squat.alpha), duration=4.0)
     run = multibody.simulate(case, engine=engine, time_step=time_step)
     assert run.rests
-    # it stands: MuJoCo does not see a lean below 1e-8 rad
+    # it stands: MuJoCo does not resolve a tilt below 1e-8 rad
     assert run.tilt[-1] < 1e-7
     assert np.isnan(run.rolling_angle[-1])
     assert run.energy[-1] == pytest.approx(0.0, abs=1e-8)

@@ -1,4 +1,4 @@
-"""Engines that other packages declare: found, run, and kept from breaking ours."""
+"""Engines that other packages declare: discovery, runs, and isolation from our engines."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_a_broken_engine_is_named_and_breaks_no_other(install: Install, factory:
     require_runnable(still, Run("mujoco", "recess"))
 
 
-def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
+def test_a_name_that_two_packages_claim_is_refused(install: Install) -> None:
     install("one", shared="external_engine:Sound")
     install("two", shared="external_engine:Loud")
     assert multibody.engine_names().count("shared") == 1
@@ -77,7 +77,7 @@ def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
         find_engine("shared")
 
 
-def test_our_names_are_taken(install: Install) -> None:
+def test_another_package_cannot_replace_our_engine(install: Install) -> None:
     install(mujoco="external_engine:fails")
     assert multibody.engine_names() == tuple(engine_packages())
     assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco"

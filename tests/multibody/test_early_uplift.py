@@ -1,4 +1,4 @@
-"""What an engine says of an uplift that comes before its load, or that it does not follow."""
+"""Diagnostics of an uplift before its load, or of one that an engine does not follow."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ TURN = BODY.base_radius * GRAVITY / (BODY.transverse_inertia + BODY.mass_centre_
 
 
 def surplus_until_sure(rise: float) -> float:
-    """Return by how much a load rises, over what uplifts, until the base leans beyond doubt."""
+    """Rise of a load beyond the uplift load until the base tilts beyond the noise of standing."""
     return float((6.0 * sure_tilt(BODY, 2.0**-53) / TURN * rise**2) ** (1.0 / 3.0)) + rise * STEP
 
 
 def opening(share: float, rise: float) -> list[Diagnostic]:
-    """Return what is said of a base that opens at `share` of the load, which rises by `rise` a second."""
+    """Diagnostic of a base that opens at `share` of the load, which rises by `rise` a second."""
     time = STEP * np.arange(round(1.3 / rise / STEP))
     load = rise * time
     start = starting_state(BODY, None, 1.0)
     b, height = BODY.base_radius, BODY.mass_centre_height
-    # the base carries the load up to there, and turns by what is more
+    # the base carries the load up to there, and the excess turns it
     rate = STEP * np.cumsum(TURN * np.maximum(load - share, 0.0))
     angle = STEP * np.cumsum(rate)
     end = int(np.argmax(angle > 1e-4)) or len(time)
@@ -56,7 +56,7 @@ def opening(share: float, rise: float) -> list[Diagnostic]:
 
 
 @pytest.mark.parametrize("rise", [1.0, 4.0])
-def test_a_base_that_opens_before_its_load_says_how_much_was_missing(rise: float) -> None:
+def test_a_base_that_opens_before_its_load_reports_the_missing_share(rise: float) -> None:
     least = surplus_until_sure(rise)
     for share in np.random.default_rng(11).uniform(0.8, 1.0 - least - EARLY, 6):
         (early,) = opening(float(share), rise)
@@ -67,19 +67,19 @@ def test_a_base_that_opens_before_its_load_says_how_much_was_missing(rise: float
 
 @pytest.mark.parametrize("rise", [1.0, 4.0])
 @pytest.mark.parametrize("share", [1.0 - EARLY, 0.998, 1.0])
-def test_a_base_that_opens_at_its_load_says_nothing(share: float, rise: float) -> None:
+def test_a_base_that_opens_at_its_load_has_no_diagnostic(share: float, rise: float) -> None:
     assert not opening(share, rise)
 
 
 def pulse(over: float) -> Case:
-    """Return a case whose load rises in 0.5 s to `over` of what uplifts the base, and falls as slowly."""
+    """Case whose load rises in 0.5 s to `over` of the uplift load, and falls as slowly."""
     peak = over * GRAVITY * PIER.tan_alpha
     return Case(PIER, GroundMotion([[0.0, 0.0], [peak, 0.0], [0.0, 0.0]], 0.5), duration=1.1)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("over", [1.001, 1.1])
-def test_an_engine_opens_at_its_load_or_says_so(engine: str, over: float) -> None:
+def test_an_engine_opens_at_its_load_or_reports_it(engine: str, over: float) -> None:
     case = pulse(over)
     run, model = multibody.simulate(case, engine=engine), reduced.simulate(case)
     assert np.isfinite(run.uplift_time)

@@ -15,13 +15,13 @@ from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 # RMS(difference)/RMS(tilt) from uplift to 15 s at h = 1e-4 s: 1.7e-4 and 3.1e-4 in MuJoCo, 2.6e-4 and 8.3e-4
 # in Bullet. The budget is twice that: any other step, setting or version lands elsewhere in that range.
 TRACE = {"mujoco": 1e-4, "pybullet": 1e-4, "dart": 1e-4, "drake": 1e-3}
-# of the step: 0.07 over sixteen bodies and records; 2 would do
+# order in the step: 0.07 over sixteen bodies and records; 2 would do
 UPLIFT_STEPS, UPLIFT_ANGLE = 0.2, np.radians(0.01)
 
 
 @pytest.fixture(scope="session")
 def solve_doubled(solve_forced: Callable[..., Any]) -> Callable[..., Any]:
-    """A cylinder under twice the record, solved once for all engines."""
+    """Response of a cylinder to twice the record, solved once for all engines."""
     return cache(lambda cylinder, end: solve_forced(cylinder, el_centro_1940().scaled(2.0), end))
 
 
@@ -40,7 +40,7 @@ def test_traces_agree_and_a_wrong_size_shows(
     assert relative_difference(run, solve_doubled(pier, 15.0), 15.0) < TRACE[engine]
     # the work of the excitation is all that changes the energy: contact takes 1e-5 m^2/s^2 in fifteen seconds
     assert np.abs(run.energy_error).max() < 4e-5
-    # the comparison has teeth: half a percent of R is several times the budget
+    # sensitivity of the comparison: half a percent of R is several times the budget
     wrong = Cylinder(semidiagonal=1.005 * pier.semidiagonal, tan_alpha=pier.tan_alpha)
     assert relative_difference(run, solve_doubled(wrong, 6.0), 6.0) > 2.5 * TRACE[engine]
 
@@ -60,13 +60,13 @@ def test_small_tilts_agree_beyond_twenty_seconds(pier: Cylinder, solve_forced: C
         np.testing.assert_array_equal(np.isnan(values), resting)
 
 
-def test_an_engine_that_tips_early_is_seen(pier: Cylinder, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_engine_that_tips_early_is_detected(pier: Cylinder, monkeypatch: pytest.MonkeyPatch) -> None:
     record = el_centro_1940()
     # from half a second before it uplifts
     case = Case(pier, GroundMotion(2.0 * record.acceleration[120:200], record.time_step))
     turned, many = (multibody.simulate(case, standing_corners=n) for n in (8, 48))
     assert turned.uplift_time == pytest.approx(many.uplift_time, abs=UPLIFT_STEPS * many.time_step)
-    # four corners that stay where they are: between two of them the base tips at cos(45 deg) of the load
+    # four fixed corners: between two of them the base tips at cos(45 deg) of the load
     monkeypatch.setattr("rockwobble.multibody.engines.mujoco._LOADED", np.inf)
     early = multibody.simulate(case, standing_corners=4)
     assert early.uplift_time < many.uplift_time - 5 * many.time_step
@@ -74,7 +74,7 @@ def test_an_engine_that_tips_early_is_seen(pier: Cylinder, monkeypatch: pytest.M
 
 @pytest.mark.slow
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_an_uplift_under_a_turning_load_leaves_next_to_no_error(
+def test_uplift_under_a_turning_load_is_accurate(
     engine: str, pier: Cylinder, solve_forced: Callable[..., Any], support: str
 ) -> None:
     record = el_centro_1940()

@@ -23,7 +23,7 @@ def test_means_hold_the_impulse_of_the_record() -> None:
 
 
 @pytest.mark.parametrize("centre", [0.0, 0.5])
-def test_mean_about_the_pose_of_the_step(centre: float) -> None:
+def test_means_about_a_pose_are_the_record_in_the_middle(centre: float) -> None:
     step = 1e-4
     means = StepMeans(MOTION, UNIT, step)(100, 50, centre)
     # within a straight piece the mean is the value in the middle

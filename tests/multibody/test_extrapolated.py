@@ -1,4 +1,4 @@
-"""time_step="extrapolated": what runs at three steps tend to, and what it says where they tend to nothing."""
+"""time_step="extrapolated": limit of runs at three steps, and the diagnostics where there is none."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from rockwobble.models import (
 from rockwobble.multibody.extrapolated_step import extrapolation
 
 ALPHA = 0.2
-# of alpha, after a release: what the second order leaves of an engine of first order
+# of alpha, after a release: remaining error of second order in an engine of first order
 RELEASED = 1e-7
 # relative RMS under El Centro on (10 m, 0.1) to 15 s, at the cost of one run at the default step
 SHAKEN = {"mujoco": 5e-6, "pybullet": 2e-5, "dart": 2e-5}
-ESTIMATE = 3.0  # Richardson is good for a factor
+ESTIMATE = 3.0  # factor within which Richardson is right
 
 
 @pytest.mark.slow
@@ -35,11 +35,11 @@ ESTIMATE = 3.0  # Richardson is good for a factor
     ("support", "tan_alpha", "finest"),
     [
         ("recess", 0.35, 1.75e-4),
-        # what is squat rolls on a large rim, whose second order is larger
+        # a squat body rolls on a large rim, whose second order is larger
         ("flat", 3.0, 3e-5),
     ],
 )
-def test_a_release_extrapolates(
+def test_a_release_extrapolates_to_the_model(
     engine: str, support: str, tan_alpha: float, finest: float, run_release: Callable[..., Any]
 ) -> None:
     options = {"duration": 2.0, "time_step": "extrapolated", "finest_step": finest}
@@ -55,24 +55,24 @@ def test_a_release_extrapolates(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", [name for name in SHAKEN if name in multibody.available_engines()])
-def test_a_shaken_run_extrapolates(engine: str, solve_forced: Callable[..., Any]) -> None:
+def test_a_shaken_run_extrapolates_to_the_model(engine: str, solve_forced: Callable[..., Any]) -> None:
     motion, cylinder = el_centro_1940(), Cylinder(semidiagonal=10.0, tan_alpha=0.1)
     run = multibody.simulate(Case(cylinder, motion, duration=15.0), engine=engine, time_step="extrapolated")
     exact = solve_forced(cylinder, motion, 15.0)
     tilt = np.interp(exact.time, run.time, run.tilt)
     relative = np.sqrt(np.mean((tilt - exact.tilt) ** 2) / np.mean(exact.tilt**2))
     assert relative < SHAKEN[engine]
-    # near passes of upright make its error one of second order
+    # near passes make its error one of second order
     assert [(fact.code, fact.bound) for fact in run.facts] == [("extrapolated", 2.0)]
 
 
 def three(error: Callable[[float], Any], **more: Any) -> list[Trace]:
-    """Return runs at steps of 4, 2 and 1, whose tilt is off by `error` of the step."""
+    """Runs at steps of 4, 2 and 1, with a tilt in error by `error` of the step."""
     return [replace(trace_of(0.1 + error(step), **more), time_step=step) for step in (4.0, 2.0, 1.0)]
 
 
 @pytest.mark.parametrize("order", [1, 2])
-def test_a_series_of_one_term_is_taken_off(order: int) -> None:
+def test_a_series_of_one_term_extrapolates_exactly(order: int) -> None:
     shape = 1e-5 * np.sin(0.1 * np.arange(100))
     runs = three(lambda step: shape * step**order)
     limit = extrapolation(runs, ALPHA)
@@ -85,7 +85,7 @@ def test_a_series_of_one_term_is_taken_off(order: int) -> None:
 
 def test_angles_a_turn_apart_are_one_angle() -> None:
     shape = 1e-5 * np.sin(0.1 * np.arange(100))
-    # pushed along an axis, rounding decides whether it leans towards pi or -pi; a maximum, then a minimum
+    # pushed along an axis, rounding decides between azimuths pi and -pi; a maximum, then a minimum
     turns = [math.pi, -math.pi, math.pi - 3e-5]
     runs = [
         replace(
@@ -108,12 +108,12 @@ def test_the_estimate_is_what_a_halving_moves() -> None:
     limit = extrapolation(three(lambda step: shape * (step + 0.05 * step**2)), ALPHA)
     error = np.abs(limit.tilt - 0.1).max()
     assert error > 1e-8
-    # the second order that is left is quartered: three of four parts are gone by the last halving
+    # the remaining second order is quartered: three of four parts are gone by the last halving
     assert limit.error_estimate == pytest.approx(3.0 * error, rel=1e-6)
 
 
 def test_a_landing_with_every_step_alike_is_no_agreement() -> None:
-    # contact resolves 1e-6 rad: a swing that ends below it is known up to its top, and no further
+    # contact resolves 1e-6 rad: a swing that ends below it is known up to its maximum, and no further
     for low, until in ((1.01e-6, 0.99), (0.99e-6, 0.3)):
         runs = three(lambda step: 1e-5 * step * np.sin(0.1 * np.arange(100)))
         points = np.array([[0.1, 0.02, 0.0, -1.0], [0.3, 0.1, 0.0, 1.0], [0.4, low, 0.0, -1.0]])
@@ -122,14 +122,14 @@ def test_a_landing_with_every_step_alike_is_no_agreement() -> None:
 
 
 def left_to_chance(code: str, time: float) -> dict[str, Any]:
-    """Return what a trace has that is known until then: contact drives it, or its next swing ends too low."""
+    """Trace that is known until this time: contact drives it, or its next swing ends too low."""
     if code == "energy":
         return {"facts": (Diagnostic(code=code, time=time),)}
     return {"extrema": np.array([[time, 0.1, 0.0, 1.0], [time + 0.1, 1e-7, 0.0, -1.0]])}
 
 
 @pytest.mark.parametrize("code", ["unresolved_pass", "energy"])
-def test_beyond_what_is_left_to_chance_it_is_the_finest_run(code: str) -> None:
+def test_after_an_unresolved_pass_it_is_the_finest_run(code: str) -> None:
     runs = three(lambda step: 1e-5 * step * np.sin(0.1 * np.arange(100)))
     runs[-1] = replace(runs[-1], **left_to_chance(code, 0.5))
     limit = extrapolation(runs, ALPHA)
@@ -143,7 +143,7 @@ def test_beyond_what_is_left_to_chance_it_is_the_finest_run(code: str) -> None:
     assert (limit.facts[-1].code, limit.facts[-1].detail) == ("not_extrapolated", code)
 
 
-def test_beyond_a_divergence_it_is_the_finest_run() -> None:
+def test_after_a_divergence_it_is_the_finest_run() -> None:
     side = {4.0: 1.0, 2.0: -1.0, 1.0: 1.0}
     late = np.arange(100) >= 60
 
@@ -168,7 +168,7 @@ def test_runs_that_do_not_come_closer_are_not_extrapolated() -> None:
     assert [(fact.code, fact.detail) for fact in limit.facts] == [("not_extrapolated", "no_closer")]
 
 
-def test_a_tilt_stays_positive_and_two_sides_of_upright_do_not_mix() -> None:
+def test_extrapolation_keeps_the_tilt_positive_and_the_side_of_upright() -> None:
     runs = three(lambda step: np.where(np.arange(50) == 20, -0.1 + 1e-5 * step**1.2, 1e-5 * step))
     limit = extrapolation(runs, ALPHA)
     assert (limit.tilt >= 0.0).all()
@@ -180,7 +180,7 @@ def test_a_tilt_stays_positive_and_two_sides_of_upright_do_not_mix() -> None:
     np.testing.assert_array_equal(extrapolation(turned, ALPHA).rolling_angle, 6.0)
 
 
-def test_a_failed_run_is_said() -> None:
+def test_a_failed_run_is_reported() -> None:
     fails = trace_of([0.1], outcome="failed")
     good = three(lambda step: np.full(50, 1e-5 * step))
     (fact,) = extrapolation([fails, *good[1:]], ALPHA).facts

@@ -31,8 +31,8 @@ def free(cylinder: Cylinder, initial: InitialState | None, **changes: Any) -> Tr
 
 @pytest.mark.slow
 @pytest.mark.parametrize("integrator", ["trapezoidal", "generalized-alpha"])
-def test_second_order_under_excitation(integrator: str, pier: Cylinder) -> None:
-    # not zero at the start, and rough: a force shifted by a part of a step is first order
+def test_error_is_second_order_under_excitation(integrator: str, pier: Cylinder) -> None:
+    # not zero at the start, and rough: a force shifted within a step is first order
     motion = GroundMotion([[0.6, -0.4], [0.9, 0.5], [-0.8, 0.7], [0.3, -0.9], [0.2, 0.1]], 0.4)
     release = InitialState(pier.alpha / 2, rolling_rate=0.5)
     steps = np.array([8e-4, 4e-4, 2e-4])
@@ -57,7 +57,7 @@ def test_rolling_through_upright_ends_the_run(
     assert math.isnan(run.peak_tilt)
     assert run.facts[0].code == "not_finite"
     assert run.facts[0].detail.startswith("the rim rolled through upright, where it has no")
-    # it is cut where that happened, at the first pass, and was right until then
+    # cut at the first pass, and right until then
     assert 1.1 < run.time[-1] < 1.3
     exact = solve_free(pier, release, run.time[:-1], rolls_out=True)
     assert np.abs(run.tilt[:-1] - exact.tilt).max() / pier.alpha < TILT
@@ -65,13 +65,13 @@ def test_rolling_through_upright_ends_the_run(
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.01, 0.3])
-def test_a_rim_that_would_slip_is_said(pier: Cylinder, friction: float) -> None:
+def test_a_rim_that_would_slip_is_reported(pier: Cylinder, friction: float) -> None:
     # the release needs a friction of about 0.13
     run = free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=0.5, friction=friction)
     assert ("friction_needed" in {fact.code for fact in run.facts}) == (friction < 0.1)
 
 
-def test_contact_that_would_be_lost_is_said(pier: Cylinder) -> None:
+def test_contact_that_would_be_lost_is_reported(pier: Cylinder) -> None:
     squat = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
     run = free(squat, InitialState(squat.alpha / 2, rolling_rate=10.0), duration=1.0)
     first = run.first("tension")
@@ -101,7 +101,7 @@ def test_a_step_that_does_not_converge_ends_the_run_in_silence(
         ({"relative_tolerance": 0.0}, "relative_tolerance must be above 0 and at most 0.001, got 0"),
     ],
 )
-def test_what_it_cannot_do_is_refused_in_one_line(change: dict[str, Any], message: str) -> None:
+def test_bodies_it_cannot_simulate_are_refused_in_one_line(change: dict[str, Any], message: str) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     given = {"initial": InitialState(0.1), "duration": 1.0, **change}
     with pytest.raises(ValueError, match=r"must|setting|uplift") as caught:

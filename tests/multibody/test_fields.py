@@ -66,7 +66,7 @@ def test_energy_is_kinetic_and_potential(run: Any) -> None:
         0.5 * transverse * (slope(run.tilt) ** 2 + (phi_rate * np.sin(theta)) ** 2) + 0.5 * axial * spin**2
     )
     np.testing.assert_allclose(run.energy[inner], energy, atol=2e-4 * energy.max())
-    # less the work of the ground it stays as it was
+    # energy less the work of the ground is constant
     push = (ground(run.time)[inner] * velocity).sum(axis=1)
     work = np.append(0.0, -SAMPLE * np.cumsum(0.5 * (push[1:] + push[:-1])))
     kept = run.energy[inner] - work
@@ -76,7 +76,7 @@ def test_energy_is_kinetic_and_potential(run: Any) -> None:
     assert np.abs(run.energy_error).max() < 1e-5 * energy.max()
 
 
-def test_force_is_what_the_mass_centre_needs(run: Any) -> None:
+def test_force_is_mass_times_acceleration_plus_weight(run: Any) -> None:
     inner = slice(1, -1)
     curve = np.diff(run.centre_of_mass, 2, axis=0) / SAMPLE**2
     needed = (curve + ground(run.time)[inner]) / 9.81 + [0.0, 0.0, 1.0]
@@ -87,14 +87,14 @@ def test_force_is_what_the_mass_centre_needs(run: Any) -> None:
     assert np.median(error) < 1e-4
     assert np.quantile(error, 0.9) < 5e-3
     assert np.ptp(needed[:, 2]) > 0.3
-    # after the record ends, with a jump, nothing but its own motion
+    # after the record ends with a jump, free motion alone
     still = run.time[inner][clear] > 0.805
     assert np.median(error[still]) < 1e-4
 
 
 @pytest.mark.slow
 def test_the_vertical_component_moves_the_uplift(engine: str, solve_forced: Callable[..., Any]) -> None:
-    # the load of the rim is g + az: a ramp of the push reaches its share of it at a time of its own
+    # the load of the rim is g + az: a ramp of the push reaches its share of it at another time
     uplifts = []
     for vertical in (-3.0, 0.0, 3.0):
         ramp = GroundMotion([[0.0, 0.0, vertical], [3.0, 0.1, vertical], [6.0, 0.2, vertical]], 0.4)

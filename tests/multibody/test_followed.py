@@ -19,7 +19,7 @@ from rockwobble.multibody.scene import froude_scale
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 PERIOD = 1.2  # [s]
 UPLIFT = 9.81 * PIER.tan_alpha  # [m/s^2]
-STEP = 2.5e-4  # [s] what follows is a matter of whole chunks of steps, and holds at steps as large
+STEP = 2.5e-4  # [s] the decision depends on whole chunks of steps, and holds at steps as large
 
 
 def one_sine(times_uplift: float, still: float = 0.0) -> GroundMotion:
@@ -44,7 +44,7 @@ def test_a_fall_that_the_record_cuts_off_overturns(engine: str) -> None:
     np.testing.assert_allclose(short.tilt, whole.tilt, atol=1e-9)
     np.testing.assert_allclose(short.contact_force, whole.contact_force, atol=1e-6)
     assert short.passes["time"].tolist() == pytest.approx(whole.passes["time"].tolist())
-    # how fast the side comes down says nothing of the passes before
+    # the speed at which the side comes down is no diagnostic of the passes before
     within = short.tilt < PIER.alpha
     fastest = float(np.abs(short.tilt_rate[within]).max())
     assert short.contact_resolution == pytest.approx(STEPS_OF_A_PASS * short.time_step * fastest, rel=0.05)
@@ -64,7 +64,7 @@ def test_a_fall_past_the_end_has_the_samples_of_the_reduced_model(engine: str) -
 
 
 @pytest.mark.parametrize("sample_step", [0.9, 100.0])
-def test_a_fall_between_two_samples_is_its_start_and_its_end(sample_step: float) -> None:
+def test_a_fall_between_two_samples_has_its_start_and_its_end(sample_step: float) -> None:
     case = Case(PIER, GroundMotion(np.full((2, 2), 2.0 * UPLIFT), 0.8), duration=0.8)
     run, model = (each.simulate(case, sample_step=sample_step) for each in (multibody, reduced))
     np.testing.assert_allclose(run.time[:-1], model.time[:-1], rtol=1e-12)
@@ -72,7 +72,7 @@ def test_a_fall_between_two_samples_is_its_start_and_its_end(sample_step: float)
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
-@pytest.mark.parametrize("tilt_rate", [0.05, -0.05])  # one rises at its end, one passes upright before that
+@pytest.mark.parametrize("tilt_rate", [0.05, -0.05])  # one grows at its end, one passes upright before it
 def test_a_free_response_that_is_cut_has_the_peak_of_its_swing(
     engine: str, support: str, tilt_rate: float
 ) -> None:
@@ -82,13 +82,13 @@ def test_a_free_response_that_is_cut_has_the_peak_of_its_swing(
     model = reduced.simulate(case, support=support)
     assert np.sign(run.tilt_rate[-1]) == np.sign(tilt_rate)
     assert run.tilt.max() < 0.99 * run.peak_tilt
-    # of first order in the step, at 2.5 times the default
+    # error of first order in the step, at 2.5 times the default
     assert run.peak_tilt == pytest.approx(model.peak_tilt, abs=1e-5 * PIER.alpha)
     assert run.followed_until == pytest.approx(model.followed_until, abs=1e-4)
 
 
 def test_motion_after_the_end_changes_only_the_peak(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    # it wobbles with more energy than that of its balance, and turns back after the end
+    # a wobble with more energy than that of its balance, which turns back after the end
     start = InitialState(0.55 * PIER.alpha, tilt_rate=0.02, rolling_rate=0.95)
     case = Case(PIER, initial=start, duration=0.51303)
     followed = multibody.simulate(case, engine=engine, time_step=STEP)
@@ -110,13 +110,13 @@ def test_motion_after_the_end_changes_only_the_peak(engine: str, monkeypatch: py
 
 
 @pytest.mark.parametrize("centre", [0.0, 0.5, 1.0])
-def test_the_step_after_a_cut_takes_back_what_goes_beyond_it(centre: float) -> None:
+def test_the_step_after_a_cut_corrects_the_ground_velocity(centre: float) -> None:
     motion = GroundMotion([[0.0, 1.0], [2.0, -1.0], [1.0, 3.0], [4.0, 1.0]], 0.02)
     step, end = 1e-3, 0.0314
     means = StepMeans(motion, froude_scale(6.0, 9.81), step)
-    taken = 33  # one past the first pose at the end or after it
+    taken = 33  # one more than the index of the first pose at the end or after it
     total = step * (means(0, taken, centre).sum(axis=0) + means.stop(end, taken, centre))
-    # of the straight lines between samples, from the start of the first step (the ground kept still before)
+    # integral of the straight lines between samples, from the start of the first step (still ground before)
     time = np.linspace(0.0, end, 20001)
     exact = [
         np.trapezoid(np.interp(time, 0.02 * np.arange(4), component), time)
@@ -150,5 +150,5 @@ def test_noise_of_a_slow_rise_is_no_turn() -> None:
     assert not turned(noise[:1], 0.1)
     assert not turned(noise + top, 0.12)
     assert turned(noise + top, 0.119)
-    # a maximum before the end is none after it, and a descent has yet to rise again
+    # a maximum before the end does not count, and a descent has yet to rise again
     assert not turned([TurningPoint(0.9, 0.2, 0.0, True)], 0.11)

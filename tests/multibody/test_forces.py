@@ -18,8 +18,8 @@ STEP = 1e-4
 
 
 @pytest.mark.parametrize("support", [RECESS, FLAT])
-def test_force_of_a_step_is_that_of_the_engines_own_contacts(support: Support) -> None:
-    # pushed sideways as by the ground, so that friction has work to do
+def test_force_of_a_step_equals_the_engines_contact_force(support: Support) -> None:
+    # pushed sideways like an inertia force, so that friction has work to do
     initial = InitialState(0.2, tilt_rate=0.1, rolling_angle=0.7, rolling_rate=0.5)
     scene = scene_of(Cylinder(semidiagonal=6.0, tan_alpha=0.5), initial, support=support)
     ground = np.tile([1.5, -0.8, 0.0], (41, 1))
@@ -31,7 +31,7 @@ def test_force_of_a_step_is_that_of_the_engines_own_contacts(support: Support) -
     force = force_of_steps(poses, after, ground, STEP, 9.81)
     model = compile_scene(scene, MujocoSettings(**settings), standing=False)
     for index in (1, 20, 40):
-        # the same step again, from the pose and the velocity that led to it
+        # the same step repeated, from its pose and velocity
         data = mujoco.MjData(model)
         data.qpos[:3], data.qpos[3:] = poses.position[index], poses.quaternion[index]
         data.qvel[:3] = poses.velocity[index]
@@ -47,8 +47,8 @@ def test_force_of_a_step_is_that_of_the_engines_own_contacts(support: Support) -
         np.testing.assert_allclose(force[:, index], own, atol=1e-6)
 
 
-def test_means_of_a_force_that_changes_steadily_are_that_force() -> None:
-    # a straight line is its own mean under a window that is even, whatever the chunks
+def test_means_of_a_linear_force_are_that_force() -> None:
+    # a straight line is its own mean under a symmetric window, whatever the chunks
     samples = 1e-3 * np.array([0.0, 4.03, 5.0, 9.999, 10.0, 24.96])
     number = np.arange(260)
     force = np.stack([1.0 + 0.01 * number, 2.0 - 0.02 * number, 3.0 + 0.0 * number])
@@ -71,11 +71,11 @@ def test_load_is_averaged_over_an_empty_and_a_doubled_step() -> None:
     force[:, 203], force[:, 204] = 0.0, 2.0
     record = ForceSamples(np.array([0.02]), STEP)
     record.add(force)
-    # the weights of two neighbours differ by at most pi/2/33^2
+    # weights of neighbours in the window differ by at most pi/2/33^2
     np.testing.assert_allclose(record.at(np.array([0.02])), np.ones((1, 3)), atol=1.5e-3)
 
 
-def test_the_first_step_does_not_count() -> None:
+def test_the_contact_force_of_the_first_step_is_ignored() -> None:
     force = np.ones((3, 400))
     force[:, 0] = 50.0
     record = ForceSamples(np.array([0.0]), STEP)

@@ -20,7 +20,7 @@ TILT = {0.2: 2e-6, 0.3: 3e-6, 1.0: 3e-5, 3.0: 1e-4}
 
 
 def release(cylinder: Cylinder) -> InitialState:
-    """At half of alpha, with 0.5 rad/s at the reference size, the same for every size in Froude's sense."""
+    """Release at half of alpha, with 0.5 rad/s at the reference size, scaled by Froude to any size."""
     rate = 0.5 * (6.0 / cylinder.semidiagonal) ** 0.5
     return InitialState(cylinder.alpha / 2, rolling_angle=0.3, rolling_rate=rate)
 
@@ -39,7 +39,7 @@ def test_free_response_follows_the_model_of_its_support(
     assert np.abs(run.tilt - exact.tilt).max() < budget * cylinder.alpha
     # the rolling angle magnifies a difference of tilt near upright by 20
     assert np.abs(run.rolling_angle - exact.rolling_angle).max() < 20 * budget
-    # the recess holds the twist but for what its stiffness gives, 5e-6 rad; flat ground lets it grow
+    # the recess limits the twist to the yield of its stiffness, 5e-6 rad; flat ground lets it grow
     assert np.abs(run.twist - exact.twist).max() < 20 * budget + 6e-6
     assert (np.abs(run.twist).max() > 2e-3) == (support == "flat")
     # a kinetic energy of 0.5 m^2/s^2 for the pier; the creep of the rim takes or gives 1e-6 of it
@@ -48,13 +48,13 @@ def test_free_response_follows_the_model_of_its_support(
         np.testing.assert_allclose(run.energy, run.energy[0], atol=5e-6)
         height = run.centre_of_mass[0, 2] - cylinder.mass_centre_height
         assert run.energy[0] > 9.81 * height > 0.0
-    # and the two supports are not the same: at tan alpha 3 they differ by 0.05 alpha
+    # the two supports differ: at tan alpha 3 by 0.05 alpha
     other = solve_free(cylinder, initial, run.time, rolls_out=support != "flat")
     assert np.abs(run.tilt - other.tilt).max() > 8e-4 * cylinder.alpha
 
 
-def test_a_body_with_inertias_of_its_own(engine: str, solve_free: Callable[..., Any]) -> None:
-    # a pier that carries a deck, of a size of its own: mass high up, an outline not twice the mass centre
+def test_a_body_with_given_inertias_follows_the_model(engine: str, solve_free: Callable[..., Any]) -> None:
+    # pier with a deck: mass high up, an outline that is not twice the mass centre
     column = Cylinder(semidiagonal=3.0, tan_alpha=0.3, height=4.0, transverse_inertia=1.25, axial_inertia=1.0)
     initial = release(column)
     run = multibody.simulate(Case(column, initial=initial, duration=3.0), engine=engine)
@@ -65,7 +65,7 @@ def test_a_body_with_inertias_of_its_own(engine: str, solve_free: Callable[..., 
     assert np.abs(run.tilt - other.tilt).max() > 0.05 * column.alpha
 
 
-def test_error_falls_with_the_step(engine: str, solve_free: Callable[..., Any]) -> None:
+def test_error_falls_with_the_step_at_its_order(engine: str, solve_free: Callable[..., Any]) -> None:
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
     initial = release(squat)
     steps = np.array([8e-4, 4e-4, 2e-4])
@@ -83,5 +83,5 @@ def test_error_falls_with_the_step(engine: str, solve_free: Callable[..., Any]) 
     stopping = errors(friction_damping=1.0)
     slope = np.polyfit(np.log(steps), np.log(stopping), 1)[0]
     assert slope == pytest.approx(1.0, abs=0.2)
-    # what is left of the creep by default is a ninth: 2 (1/1.8 - 1/2)
+    # the remaining creep at the default is a ninth: 2 (1/1.8 - 1/2)
     assert (errors() < stopping / 6).all()

@@ -1,4 +1,4 @@
-"""A run that went wrong says so: settings and steps at which the engines fail."""
+"""Failed runs are reported: settings and steps at which the engines fail."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ BODY = scaled_body(PIER, 1.0)
         ({"engine": "pybullet", "contact_slop": 0.1, "contact_erp": 1e-9}, "penetration"),
     ],
 )
-def test_failures_are_outcomes(settings: dict[str, Any], reason: str) -> None:
+def test_failure_is_an_outcome_with_a_diagnostic(settings: dict[str, Any], reason: str) -> None:
     if settings.get("engine") == "pybullet" and "pybullet" not in multibody.available_engines():
         pytest.skip("no wheel of pybullet here")
     run = multibody.simulate(Case(PIER, initial=RELEASE, duration=2.0), **settings)
     assert run.outcome == "failed"
     assert reason in ("", run.facts[0].code)
     assert np.isnan(run.peak_tilt)
-    # the trajectory ends where the failure begins, and is sound until then
+    # the trajectory ends where the failure begins, and is right until then
     assert run.time[-1] < 2.0
     for name in ("tilt", "energy", "centre_of_mass", "twist"):
         assert np.isfinite(getattr(run, name)).all()
@@ -67,7 +67,7 @@ def test_a_guide_that_gives_way_fails() -> None:
 @pytest.mark.parametrize(
     "given",
     [
-        # the truncation of the step is far below 1 % of alpha in all of these, and nothing limits them
+        # the truncation error of the step is far below 1 % of alpha in all of these
         {"time_step": 1e-6, "length": 0.01},
         {"time_step": 1e-3, "length": 2.0},
         {"tan_alpha": 0.05},
@@ -76,13 +76,13 @@ def test_a_guide_that_gives_way_fails() -> None:
         {"tan_alpha": 3.0, "friction": 10.0},
     ],
 )
-def test_sound_extremes_agree_and_say_nothing(engine: str, support: str, given: dict[str, float]) -> None:
+def test_extremes_agree_without_diagnostics(engine: str, support: str, given: dict[str, float]) -> None:
     body = Cylinder(semidiagonal=6.0, tan_alpha=given.get("tan_alpha", 0.2))
     release = InitialState(0.5 * body.alpha, rolling_rate=given.get("rate", 0.5))
     case = Case(body, initial=release, duration=given.get("length", 0.5), friction=given.get("friction", 1.0))
     run = multibody.simulate(case, engine=engine, support=support, time_step=given.get("time_step"))
     assert run.facts == ()
-    until = run.time <= case.length  # a fall after that multiplies every difference
+    until = run.time <= case.length  # after that a fall multiplies every difference
     model = reduced.simulate(case, support=support).tilt[: until.sum()]
     assert run.tilt[until] == pytest.approx(model, abs=0.01 * body.alpha)
 
@@ -104,7 +104,7 @@ def test_doubtful_runs_have_diagnostics(engine: str, settings: dict[str, Any], c
     assert code in {fact.code for fact in run.facts}
 
 
-def test_friction_that_does_not_suffice_is_said(engine: str) -> None:
+def test_insufficient_friction_is_reported(engine: str) -> None:
     case = Case(PIER, initial=RELEASE, duration=0.5, friction=0.05)
     assert {"slip", "energy"} <= {fact.code for fact in multibody.simulate(case, engine=engine).facts}
 
@@ -115,7 +115,7 @@ def test_steps_too_large_for_contact_or_lost_in_rounding_are_refused(engine: str
             multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1), engine=engine, time_step=step)
 
 
-def test_flight_is_said(engine: str) -> None:
+def test_flight_is_reported(engine: str) -> None:
     # thirty radians in a second at half of alpha throw it up
     run = multibody.simulate(
         Case(PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=30.0), duration=0.2), engine=engine
@@ -135,7 +135,7 @@ def test_passes_too_close_to_upright_are_marked(engine: str, time_step: float | 
     assert near.contact_resolution == pytest.approx(STEPS_OF_A_PASS * step, rel=0.02)
 
 
-def test_a_gain_is_held_against_the_energy_of_the_motion() -> None:
+def test_an_energy_gain_is_relative_to_the_energy_of_the_motion() -> None:
     scale, n = energy_scale(BODY, 9.81), 10
     start = starting_state(BODY, RELEASE, 1.0)
     steps = Steps(*(np.tile(part, (n, 1)) for part in
@@ -153,7 +153,7 @@ def test_a_gain_is_held_against_the_energy_of_the_motion() -> None:
     # two percent of the energy of the motion, and of a twentieth of its balance where that is more
     assert (fails(moving, 0.0155), fails(moving, 0.0165)) == (False, True)
     assert (fails(still, 9e-4), fails(still, 1.1e-3)) == (False, True)
-    # what it had before counts
+    # energy at the start counts
     assert (fails(still, 0.015, 0.8), fails(still, 0.0165, 0.8)) == (False, True)
 
 

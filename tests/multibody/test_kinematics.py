@@ -46,7 +46,7 @@ def rim_at(start: Start) -> Rim:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_state_comes_back(seed: int) -> None:
+def test_a_state_is_recovered_from_its_pose_and_velocity(seed: int) -> None:
     random = np.random.default_rng(seed)
     state = InitialState(
         tilt=10.0 ** random.uniform(-9.0, 0.0),
@@ -86,7 +86,7 @@ def test_energy_and_momentum_are_those_of_the_equations() -> None:
     assert momentum_at(start) == pytest.approx(B * state.rolling_rate, rel=1e-12)
 
 
-def test_momentum_does_not_depend_on_where_it_rolled_and_a_point_that_slides_slips() -> None:
+def test_momentum_ignores_the_place_and_a_sliding_point_slips() -> None:
     start = starting_state(BODY, InitialState(tilt=0.3, rolling_rate=0.5, tilt_rate=1.0), 1.0)
     moved = replace(start, position=start.position + np.array([50.0, 20.0, 0.0]))
     assert momentum_at(moved) == pytest.approx(momentum_at(start), rel=1e-12)
@@ -104,7 +104,7 @@ def test_upright_has_no_rates_to_divide_by() -> None:
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
 @pytest.mark.parametrize("turn_in_step", [0.3, 2.0, 3.2, 4.5])
-def test_rolling_angle_goes_on_the_way_of_the_momentum(way: float, turn_in_step: float) -> None:
+def test_rolling_angle_continues_in_the_sense_of_the_momentum(way: float, turn_in_step: float) -> None:
     # a pass turns by a little over pi, and at upright all of it in one step
     steady = np.array([0.1, 0.2, 0.3])
     angle = way * np.concatenate([steady, steady[-1] + turn_in_step + steady])
@@ -119,7 +119,7 @@ def test_a_small_step_back_is_not_a_whole_turn() -> None:
     np.testing.assert_allclose(unwrap(np.array([0.2, 0.1]), _forward, always, 0.15, True), [0.2, 0.1])
 
 
-def test_the_angle_waits_while_the_cylinder_stands() -> None:
+def test_the_rolling_angle_is_constant_at_rest() -> None:
     azimuth = np.array([0.5, 2.0, -2.9, 1.0, -1.0, 0.7])
     leans = np.array([True, False, False, False, True, True])
     angle = unwrap(azimuth, _forward, leans, 0.4, True)
@@ -127,8 +127,8 @@ def test_the_angle_waits_while_the_cylinder_stands() -> None:
 
 
 @pytest.mark.parametrize("edge", [1, 3, 4, 5])
-def test_the_angle_goes_on_over_chunks(edge: int) -> None:
-    # it stands, leans to the other side, and turns by more than a quarter at the upright position
+def test_the_rolling_angle_is_continuous_over_chunks(edge: int) -> None:
+    # it stands, tilts to the other side, and turns by more than a quarter at upright
     azimuth = np.array([0.5, 2.0, -2.9, 1.0, -2.4, 2.6, 2.7])
     leans = np.array([True, False, False, False, True, True, True])
     whole = unwrap(azimuth, _forward, leans, 0.4, True)

@@ -1,4 +1,4 @@
-"""What an engine does by its default settings where it is known exactly: impacts in one plane, slides."""
+"""Engines at default settings in cases with exact answers: impacts in one plane, slides."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rockwobble.multibody.modes import mode_facts, path_of_slide
 
 
 def one_sine(tan_alpha: float) -> Case:
-    """One component, 1.3 times what uplifts, for 0.8 s."""
+    """Sine in one component, 1.3 times the uplift threshold, for 0.8 s."""
     time = np.arange(0.0, 1.0, 0.005)
     push = 1.3 * tan_alpha * 9.81 * np.sin(2.0 * np.pi * time / 0.8) * (time <= 0.8)
     body = Cylinder(semidiagonal=np.hypot(1.0, 2.0), tan_alpha=tan_alpha)
@@ -23,7 +23,7 @@ def one_sine(tan_alpha: float) -> Case:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    # and of the release a step at whose closing points as hard as the rim would stop the heel
+    # step of the release at which closing points as hard as the rim would stop the heel
     ("tan_alpha", "grazes"),
     [(0.1, 1e-4), (0.2, 3.30240449149053e-4), (0.5, 4.852738114354453e-5), (1.0, 3.8826684786683367e-4)],
 )
@@ -46,7 +46,7 @@ def test_an_impact_in_one_plane_is_of_momentum_at_any_step(tan_alpha: float, gra
 
 
 @pytest.mark.slow
-def test_an_impact_of_momentum_needs_no_word_and_another_says_so() -> None:
+def test_only_an_impact_that_breaks_momentum_is_reported() -> None:
     case = one_sine(0.5)
     assert multibody.simulate(case, support="flat").facts == ()
     (settled,) = multibody.simulate(case, support="flat", time_step="auto").facts
@@ -76,7 +76,7 @@ def test_a_slide_below_the_border_neither_tilts_nor_turns(sliding: str) -> None:
     assert np.abs(run.twist).max() < 1e-3
 
 
-def test_an_engine_that_tilts_what_slides_says_so() -> None:
+def test_an_engine_that_tilts_a_sliding_body_reports_it() -> None:
     motion = el_centro_1940().scaled(2.5)
     case = Case(Cylinder(semidiagonal=3.0, tan_alpha=0.5), motion, friction=0.48, duration=3.0)
     hops = {"follow_load": True, "friction_damping": 1.8, "points": 0, "noslip_iterations": 0}

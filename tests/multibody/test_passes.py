@@ -19,8 +19,8 @@ from rockwobble.multibody.passes import (
 STEP = 1e-3
 
 
-def test_a_straight_way_past_upright_is_exact_at_any_step() -> None:
-    # the axis goes past at distance d: four steps, none of them near the closest point
+def test_the_minimum_of_a_straight_pass_is_exact_at_any_step() -> None:
+    # the axis passes at distance d: four steps, none of them near the closest point
     distance, speed = 1e-5, 0.1
     time = np.arange(4) * 1e-3
     along = speed * (time - 1.37e-3)
@@ -31,7 +31,7 @@ def test_a_straight_way_past_upright_is_exact_at_any_step() -> None:
     assert point.time == pytest.approx(1.37e-3, rel=1e-9)
 
 
-def test_maximum_of_a_cosine() -> None:
+def test_the_maximum_of_a_cosine_is_third_order() -> None:
     time = np.linspace(-1.0, 1.0, 2001) + 3.3e-4
     (point,) = turning_points(time, np.cos(time), 2.0 * time)
     assert point.is_maximum
@@ -66,14 +66,14 @@ def test_a_pass_lies_between_two_maxima_that_are_more_than_rounding() -> None:
 def test_a_rest_is_a_tilt_that_stays_below_the_level(chunks: list[int]) -> None:
     tilt = np.full(500, 0.1)
     tilt[100:150] = 1e-9  # 50 ms
-    tilt[200:203] = 1e-9  # it goes past upright
+    tilt[200:203] = 1e-9  # a pass upright
     tilt[400:] = 1e-9
     watch = RestWatch(1e-6)
     for at in np.split(np.arange(500), np.cumsum(chunks)):
         watch.take(STEP * at, tilt[at])
     assert SHORTEST > 3 * STEP
     np.testing.assert_allclose(watch.rests(), [(0.1, 0.15), (0.4, 0.499)])
-    # a trace calls rest what follows a motion, and does not end one that lasts
+    # a trace counts as rests those after a motion, and leaves the last one open
     np.testing.assert_allclose(watch.after_motion(), [(0.1, 0.15), (0.4, np.nan)])
     stood = RestWatch(1e-5)
     stood.take(STEP * np.arange(500), np.where(np.arange(500) < 100, 0.0, 1e-3))
@@ -82,7 +82,7 @@ def test_a_rest_is_a_tilt_that_stays_below_the_level(chunks: list[int]) -> None:
     assert watch.resting
 
 
-def test_a_base_that_has_just_closed_does_not_rest_yet() -> None:
+def test_a_base_that_has_just_closed_is_not_at_rest() -> None:
     watch = RestWatch(1e-6)
     watch.take(STEP * np.arange(100), np.where(np.arange(100) < 95, 0.1, 0.0))
     assert not watch.resting
@@ -112,11 +112,11 @@ def test_a_pass_belongs_to_one_motion() -> None:
     assert len(passes_between(points[:3], 1e-9, [(0.0, 0.5), (9.0, 9.5)])) == 1
 
 
-def test_a_faint_opening_comes_before_a_motion_and_belongs_to_none() -> None:
+def test_a_negligible_opening_precedes_a_motion() -> None:
     points = [TurningPoint(1.0, 2e-5, 0.0, True), TurningPoint(3.0, 0.01, 0.0, True)]
     rests = [(0.0, 0.9), (1.1, 2.5), (3.5, 4.0)]
     assert negligible_uplifts(points, 1e-4, rests) == [0.9]
-    # contact resolves it, no motion follows, it never stood still in between, or none opened there
+    # contact resolves it, no motion follows, there is no rest between, or no opening
     assert negligible_uplifts(points, 1e-5, rests) == []
     assert negligible_uplifts(points[:1], 1e-4, rests) == []
     assert negligible_uplifts(points, 1e-4, [(0.0, 0.9), (3.5, 4.0)]) == []
@@ -125,7 +125,7 @@ def test_a_faint_opening_comes_before_a_motion_and_belongs_to_none() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("speaks", [False, True])
-def test_an_opening_below_what_contact_resolves_leaves_the_next_start_to_chance(speaks: bool) -> None:
+def test_an_unresolved_opening_makes_the_next_start_unpredictable(speaks: bool) -> None:
     # the first pulse passes the uplift threshold by a twentieth for some milliseconds, or stays below it
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     time = 0.005 * np.arange(360)

@@ -1,4 +1,4 @@
-"""Rapier beyond the checks of any engine: how far single precision goes, and that it says so."""
+"""Rapier beyond the checks of any engine: the limits of single precision, and their diagnostics."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_the_error_is_first_order_down_to_the_floor_of_single_precision(support:
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("share", [0.3, 0.8])
 @pytest.mark.parametrize("tan_alpha", [0.2, 0.5])
-def test_a_release_begins_with_its_own_energy(support: str, share: float, tan_alpha: float) -> None:
+def test_a_release_begins_with_its_exact_energy(support: str, share: float, tan_alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     start = InitialState(share * cylinder.alpha, rolling_rate=0.5)
     run = multibody.simulate(

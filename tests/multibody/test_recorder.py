@@ -1,4 +1,4 @@
-"""What is made of the steps of an engine, whatever chunks they come in."""
+"""Results of a recorder, for any division of the steps into chunks."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rockwobble.multibody.scene import Scene, Start, froude_scale, scaled_body, 
 STEP = 1e-4
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 BODY = scaled_body(PIER, 1.0)
-# rounding of sums that begin anew with every chunk
+# rounding of sums that begin again with every chunk
 ROUNDING = {"rtol": 1e-9, "atol": 1e-12}
 
 
@@ -49,7 +49,7 @@ def record(
 
 
 def after_uplift(recorder: Recorder) -> list[TurningPoint]:
-    """Turning points that are not the noise of standing."""
+    """Turning points without the noise of standing."""
     assert recorder.uplift is not None
     return [point for point in recorder.points if point.time > recorder.uplift[0]]
 
@@ -64,8 +64,8 @@ def computed(initial: InitialState | None, motion: GroundMotion | None, count: i
 
 
 @pytest.mark.parametrize("chunks", [[], [1, 1, 700, 5], [311] * 9])
-def test_twist_goes_on_over_whole_turns_and_signs_of_the_quaternion(chunks: list[int]) -> None:
-    # it spins about its own axis, which leans and stays: the twist is the rate times the time
+def test_twist_is_continuous_over_turns_and_signs_of_the_quaternion(chunks: list[int]) -> None:
+    # it spins about its axis at constant tilt: the twist is the rate times the time
     rate, count = -40.0, 3001
     leaning = starting_state(BODY, InitialState(0.1, rolling_angle=0.7), 1.0)
     spin = rate * axis_of(leaning.quaternion[None])
@@ -74,7 +74,7 @@ def test_twist_goes_on_over_whole_turns_and_signs_of_the_quaternion(chunks: list
     w, x, y, _ = leaning.quaternion
     cosine, sine = np.cos(0.5 * rate * time), np.sin(0.5 * rate * time)
     quaternion = np.stack([w * cosine, x * cosine + y * sine, y * cosine - x * sine, w * sine], axis=1)
-    # Bullet gives either sign
+    # Bullet returns either sign
     quaternion *= np.random.default_rng(0).choice([-1.0, 1.0], size=(count, 1))
     ones = np.ones((count, 1))
     steps = Steps(leaning.position * ones, quaternion, 0.0 * ones * leaning.position, spin * ones)
@@ -87,8 +87,8 @@ def test_twist_goes_on_over_whole_turns_and_signs_of_the_quaternion(chunks: list
 
 
 @pytest.mark.parametrize("chunks", [[2, 998, 1, 7, 1500], [400] * 10, "at its turns"])
-def test_chunks_make_no_difference(chunks: Any) -> None:
-    # it stands, uplifts, rocks and wobbles, and passes the upright position twice
+def test_results_are_the_same_for_any_chunks(chunks: Any) -> None:
+    # it stands, uplifts, rocks and wobbles, and passes upright twice
     motion = GroundMotion([[0.0, 0.0], [4.0, 0.3], [-3.0, 0.2], [0.5, 0.1], [0.0, 0.0]], 0.15)
     scene, steps, acceleration = computed(None, motion, 15001)
     samples = 0.0137 * np.arange(110)
@@ -119,7 +119,7 @@ def test_motion_after_overturning_is_not_recorded() -> None:
     assert 0 < over < 9000
     samples = 0.01 * np.arange(101)
     alone = record(scene, part(steps, slice(over + 2)), acceleration, samples, [])
-    # the engine throws it about
+    # thrown about by the engine
     position, velocity = steps.position.copy(), steps.velocity.copy()
     position[over + 2 :] += np.linspace([0.0, 0.0, 0.0], [3.0, 0.0, 5.0], len(position) - over - 2)
     velocity[over + 2 :] += [50.0, 0.0, 80.0]

@@ -1,4 +1,4 @@
-"""Runs in a ring: what is refused, what is reported, and when walls are touched."""
+"""Runs in a recess with clearance: refusals, diagnostics, and contact with walls."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
 # rounding of 1e-15 after the first touches of a wall, each of which multiplies it
 TURNED = 1e-9
-# loss of energy that is no touch: an undisturbed run of this length gains or loses 1e-5 of its energy
+# largest loss of energy without contact: an undisturbed run of this length gains or loses 1e-5 of its energy
 LOSSLESS = 1e-4
 
 
@@ -56,7 +56,7 @@ def ring(
         ({"engine": "pybullet"}, "support must be one of recess, flat in pybullet, got 'ring'"),
     ],
 )
-def test_what_is_refused(settings: dict[str, Any], message: str) -> None:
+def test_a_ring_refuses_bad_settings_and_starts(settings: dict[str, Any], message: str) -> None:
     if settings.get("engine") == "pybullet" and "pybullet" not in multibody.available_engines():
         pytest.skip("no wheel of pybullet here")
     arguments = {"support": "ring", **settings}
@@ -66,7 +66,7 @@ def test_what_is_refused(settings: dict[str, Any], message: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_a_wide_ring_is_open_ground() -> None:
+def test_a_wide_ring_equals_flat_ground() -> None:
     initial = InitialState(SQUAT.alpha / 2, rolling_rate=0.5)
     wide = ring(ring_clearance=0.2)
     free = multibody.simulate(Case(SQUAT, initial=initial, duration=2.0), support="flat")
@@ -101,9 +101,9 @@ def test_a_cylinder_that_rolls_out_meets_the_wall_and_loses_energy() -> None:
     assert {"wall_contact", "wall_impulse"} <= set(run.to_frame())
 
 
-def test_impulse_is_that_of_the_force_of_the_wall() -> None:
-    # at rest against a wall without friction: its normal force holds the push, one part in a thousand
-    # is left of the impact
+def test_impulse_is_the_integral_of_the_wall_force() -> None:
+    # at rest against a wall without friction: its normal force balances the push, with one part in a thousand
+    # of the impact remaining
     push, steep = 0.05 * 9.81, 0.4
     motion = GroundMotion(np.tile([-push, 0.0], (51, 1)), 0.01)
     run = multibody.simulate(
@@ -133,7 +133,7 @@ def test_sinking_into_a_wall_is_a_breach() -> None:
     assert first_breach(state, np.zeros(5), body, 9.81, in_recess=False) is None
 
 
-def test_a_wall_that_pushes_the_cylinder_down_is_no_joint() -> None:
+def test_a_wall_that_pushes_the_cylinder_down_is_not_reported() -> None:
     run = ring(PIER, rolling_rate=3.0, duration=1.0, friction=3.0, sample_step=1e-3)
     # ground and walls together push it down by its weight for some milliseconds
     assert run.contact_force[:, 2].min() < -0.5
@@ -149,15 +149,15 @@ def test_a_wall_that_pushes_the_cylinder_down_is_no_joint() -> None:
         # contact so stiff, or so elastic, that it gains energy
         ({"contact_time_constant": 1e-4}, "failed", "energy_gain"),
         ({"contact_damping_ratio": 0.01}, "failed", "energy_gain"),
-        # no friction of the ground: the walls alone hold it
+        # without friction of the ground the walls alone hold it
         ({"friction": 0.0}, "stands", "wall_contact"),
         ({"rolling_rate": 30.0}, "stands", "lift_off"),
         ({"ring_friction": 10.0, "rolling_rate": 3.0}, "stands", "wall_contact"),
-        # the coarsest step that is let through
+        # the coarsest step allowed
         ({"time_step": 1e-3}, "stands", "energy"),
     ],
 )
-def test_a_ring_at_an_extreme_says_what_happened(extreme: dict[str, Any], outcome: str, said: str) -> None:
+def test_a_ring_at_an_extreme_agrees_or_reports(extreme: dict[str, Any], outcome: str, said: str) -> None:
     run = ring(SQUAT, duration=1.2, **{"friction": 3.0, **extreme})
     assert run.outcome == outcome
     assert said in {fact.code for fact in run.facts}

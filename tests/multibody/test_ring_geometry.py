@@ -1,4 +1,4 @@
-"""Where walls are touched: the closed form against the points of a cylinder, and against the engine."""
+"""Contact with walls: the closed form against points of a cylinder, and against the engine."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from rockwobble.multibody.ring import (
 from rockwobble.multibody.scene import Array, scaled_body, starting_state
 
 ROUNDING = 1e-12  # of quantities of the order of b or of 1
-# clearance by which the engine is tried on both sides; a pose is good to 1e-15 m
+# clearance margin on both sides in the engine; a pose is accurate to 1e-15 m
 MARGIN = 1e-9
 
 SLENDERNESS = (0.1, 0.2, 1.0, 3.0)
-# next to each other, or with the wall steeper by little and by much; the last turn to the stationary branch
+# neighbours, or a wall steeper by little and by much; the last rows reach the stationary branch
 ANGLES = ((0.05, 0.0), (0.2, 0.1), (0.2, 0.3), (0.5, 0.5), (0.7, 0.1), (1.2, 0.0), (1.5, 0.05))
 
 
-def test_the_ring_stands_where_its_settings_say() -> None:
+def test_walls_stand_where_the_settings_say() -> None:
     ring = RingSettings(ring_clearance=0.02, ring_inclination=0.3, ring_facets=12)
     feet, turns = wall_feet(ring, 2.0), wall_orientations(ring)
     normals = axis_of(turns)
@@ -46,7 +46,7 @@ def test_the_ring_stands_where_its_settings_say() -> None:
 
 @pytest.mark.parametrize("tan_alpha", SLENDERNESS)
 @pytest.mark.parametrize(("tilt", "inclination"), ANGLES)
-def test_clearance_is_that_of_the_points_of_the_cylinder(
+def test_clearance_is_the_largest_reach_of_the_cylinders_points(
     tan_alpha: float, tilt: float, inclination: float
 ) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
@@ -62,7 +62,7 @@ def test_clearance_is_that_of_the_points_of_the_cylinder(
 
 
 @pytest.mark.parametrize("tilt", [0.01, 0.3, 1.2])
-def test_overhang_of_the_rim_is_that_of_its_points(tilt: float) -> None:
+def test_overhang_of_the_rim_is_the_largest_of_its_points(tilt: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     base = _rims(cylinder, tilt, 7200)[:7200]
     reach = np.hypot(base[:, 0], base[:, 1])
@@ -80,13 +80,13 @@ def test_overhang_of_the_rim_is_that_of_its_points(tilt: float) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("tan_alpha", [SLENDERNESS[0], SLENDERNESS[-1]])
 @pytest.mark.parametrize(("tilt", "inclination"), [angles for angles in ANGLES if angles[0] > angles[1]])
-def test_engine_touches_a_wall_just_where_the_geometry_says(
+def test_engine_touches_a_wall_exactly_at_the_computed_clearance(
     tan_alpha: float, tilt: float, inclination: float
 ) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     needed = clearance_needed(cylinder, tilt, inclination)
     assert needed > 0.0
-    # the ring has eight walls: the lean is such that one of them is where the cylinder reaches furthest
+    # the ring has eight walls: the tilt azimuth is such that the cylinder reaches furthest at one of them
     off = _off_the_lean(cylinder, tilt, inclination)
     poses = [(tilt, off), (tilt, 0.5 * math.pi + off)]
     assert (_wall_contacts(cylinder, needed - MARGIN, inclination, poses) > 0).all()
@@ -103,7 +103,7 @@ def test_angles_out_of_range_are_refused(change: dict[str, float]) -> None:
 
 
 def _rims(cylinder: Cylinder, tilt: float, count: int) -> Array:
-    """Points of the rim of the base, then of the top, leaning along x on the first circle, (2 count, 3)."""
+    """Points of the rim of the base, then of the top, tilted along x on the first circle, (2 count, 3)."""
     b, s, c = cylinder.base_radius, math.sin(tilt), math.cos(tilt)
     around = 2.0 * math.pi * np.arange(count) / count
     # the lowest point is that at which `around` is zero

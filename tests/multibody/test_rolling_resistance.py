@@ -1,4 +1,4 @@
-"""Rolling friction of the engines, given the length of a case, compared with the reduced models."""
+"""Rolling friction of the engines for the length of a case, compared with the reduced models."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, WobblingFrame
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=1.0 / 3.0)
-# MuJoCo's cone bounds sliding and rolling together: only friction that is plenty leaves the couple whole
+# MuJoCo's cone bounds sliding and rolling together: only ample friction leaves the couple whole
 GRIP = {"mujoco": 20.0, "pybullet": 4.0}
 STEP = 2e-4  # [s]
 # error of the tilt over alpha at this step: 2e-5 and 8.1e-4 were measured, the latter at every step
@@ -35,7 +35,7 @@ def rolling_case(friction: float, length: float, cylinder: Cylinder = PIER) -> C
 @pytest.mark.parametrize("slab", [0.0, pytest.param(1.0, marks=pytest.mark.slow, id="frame")])
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("engine", GRIP)
-def test_an_engine_loses_what_the_model_loses(engine: str, support: str, slab: float) -> None:
+def test_an_engine_loses_the_energy_that_the_model_loses(engine: str, support: str, slab: float) -> None:
     case = rolling_case(GRIP[engine], 0.02, WobblingFrame(PIER, slab, columns=1) if slab else PIER)
     model = reduced.simulate(case, support=support, rtol=1e-10)
     trace = multibody.simulate(case, engine=engine, support=support, time_step=STEP)
@@ -43,7 +43,7 @@ def test_an_engine_loses_what_the_model_loses(engine: str, support: str, slab: f
     assert np.abs(trace.tilt - model.tilt).max() < allowed * PIER.alpha
     lost = trace.energy[0] - trace.energy[-1]
     assert lost == pytest.approx(model.energy_lost[-1], rel=LOST[engine])
-    if not slab:  # all the way; the last pose is half a step late
+    if not slab:  # over the whole run; the last pose is half a step late
         assert trace.energy_lost[0] == pytest.approx(0.0, abs=1e-12 * trace.energy[0])
         assert trace.energy_lost == pytest.approx(model.energy_lost, abs=5e-3 * model.energy_lost[-1])
         assert "energy" not in [fact.code for fact in trace.diagnostics]
@@ -52,7 +52,7 @@ def test_an_engine_loses_what_the_model_loses(engine: str, support: str, slab: f
 
 
 def test_pybullet_delays_uplift_as_the_model_does() -> None:
-    """MuJoCo, whose contact is soft, gives way before: by half of the delay at this step."""
+    """MuJoCo, with soft contact, uplifts earlier: by half of the delay at this step."""
     time = np.arange(0.0, 1.0, 0.01)
     along = 1.25 * time * 9.81 * PIER.tan_alpha
     motion = GroundMotion(np.column_stack([along, np.zeros_like(along)]), 0.01)
@@ -61,10 +61,10 @@ def test_pybullet_delays_uplift_as_the_model_does() -> None:
     free = reduced.simulate(dataclasses.replace(case, rolling_resistance=0.0), rtol=1e-10)
     trace = multibody.simulate(case, engine="pybullet", time_step=STEP)
     assert np.abs(free.tilt - model.tilt).max() > 1e-4 * PIER.alpha
-    assert np.abs(trace.tilt - model.tilt).max() < 1e-7 * PIER.alpha  # 1e-9 were measured
+    assert np.abs(trace.tilt - model.tilt).max() < 1e-7 * PIER.alpha  # 1e-9 was measured
 
 
-def test_a_shared_cone_leaves_less_to_the_couple() -> None:
+def test_mujocos_shared_cone_reduces_the_couple() -> None:
     errors = []
     for friction in (1.0, 20.0):
         case = rolling_case(friction, 0.02)
@@ -75,16 +75,14 @@ def test_a_shared_cone_leaves_less_to_the_couple() -> None:
 
 
 @pytest.mark.parametrize("engine", GRIP)
-def test_the_length_is_scaled_with_the_cylinder(engine: str) -> None:
+def test_the_length_scales_with_the_cylinder(engine: str) -> None:
     traces = []
     for size in (6.0, 0.06):
         cylinder = Cylinder(semidiagonal=size, tan_alpha=PIER.tan_alpha)
         case = rolling_case(GRIP[engine], 0.02, cylinder)
         unit = (size / 6.0) ** 0.5
         traces.append(multibody.simulate(case, engine=engine, time_step=STEP * unit, sample_step=0.01 * unit))
-    assert traces[1].tilt == pytest.approx(
-        traces[0].tilt, abs=2e-6
-    )  # rounding, in passes; 5e-7 were measured
+    assert traces[1].tilt == pytest.approx(traces[0].tilt, abs=2e-6)  # rounding, in passes; 5e-7 was measured
 
 
 @pytest.mark.parametrize("engine", ["dart", "drake", "exudyn"])

@@ -1,4 +1,4 @@
-"""The scene files, and what a run makes of them."""
+"""The scene files, and the models that a run compiles from them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_there_is_one_scene_for_each_support() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
-def test_scene_opens_steps_a_second_and_warns_of_nothing(path: Path) -> None:
+def test_a_scene_file_opens_and_steps_without_warnings(path: Path) -> None:
     model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     while data.time < 1.0:
@@ -44,12 +44,12 @@ def test_scene_opens_steps_a_second_and_warns_of_nothing(path: Path) -> None:
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_scene_holds_the_defaults_of_a_run(path: Path) -> None:
-    # a person who opens the file sees what a run computes with
+    # the file shows the settings of a run
     model = mujoco.MjModel.from_xml_path(str(path))
-    # the file shows fewer walls than a run has, so that a person can read it
+    # the file has fewer walls than a run, for readability
     ring = RingSettings(ring_inclination=PIER.alpha, ring_facets=32) if path.stem == "ring" else None
     ours = _compiled(path.stem, standing=True, components="xyz", ring=ring)
-    # a run has its rim as soon as it leans, and its corners until then
+    # a run has the rim from the first tilt on, and the corners until then
     rolling = _compiled(path.stem, standing=False, components="xyz", ring=ring)
     for names, index in _pairs(model).items():
         of_run = rolling if names == ("ground", "cylinder") else ours
@@ -85,7 +85,8 @@ def test_scene_has_only_what_the_case_needs(
 ) -> None:
     model = _compiled(support, standing=standing, components=components)
     assert model.nu == guides + len(components)
-    # ground and cylinder, and a pair for each that touches the ground or the cylinder: its rim where it leans
+    # ground and cylinder, and a pair for each body in contact with the ground or the cylinder: the rim where
+    # it tilts
     assert (model.ngeom, model.npair) == (2 + prisms + walls, (not standing) + prisms + walls)
     assert model.nsensor == sensors
     # world and cylinder, and the ring that the sensors name
@@ -94,7 +95,7 @@ def test_scene_has_only_what_the_case_needs(
 
 
 @pytest.mark.parametrize("facets", [3, 31, 32, 100])
-def test_ring_has_the_walls_that_are_asked_for(facets: int) -> None:
+def test_a_ring_has_the_number_of_walls_in_its_settings(facets: int) -> None:
     ring = RingSettings(ring_inclination=0.4, ring_clearance=0.05, ring_facets=facets, ring_friction=0.3)
     model = _compiled("ring", standing=False, components="", ring=ring)
     walls = [index for index in range(model.ngeom) if model.geom(index).name.startswith("wall")]
@@ -107,7 +108,7 @@ def test_ring_has_the_walls_that_are_asked_for(facets: int) -> None:
         assert cylinder in pair
         friction = 1.0 if model.geom("ground").id in pair else 0.3
         np.testing.assert_allclose(model.pair_friction[index], [friction, friction, 0.0, 0.0, 0.0])
-    # no other contact of a wall, whatever else touches it: the prisms reach as far as the cylinder
+    # no other contact of a wall: the prisms reach as far as the cylinder
     assert (model.geom_contype[walls] == 0).all()
     assert (model.geom_conaffinity[walls] == 0).all()
 
@@ -149,7 +150,7 @@ def test_the_acceleration_of_the_rim_is_that_of_its_lowest_point() -> None:
     body = scaled_body(cylinder, 1.0)
     start = starting_state(body, InitialState(0.2, tilt_rate=0.7, rolling_angle=0.5, rolling_rate=0.9), 1.0)
     scene: Any = SimpleNamespace(body=body, start=start)
-    acceleration = np.array([0.3, -0.2, 0.6, 1.1, -0.8, 0.4])  # the last three in axes of the body
+    acceleration = np.array([0.3, -0.2, 0.6, 1.1, -0.8, 0.4])  # the last three in body axes
     turned = Rotation.from_quat(start.quaternion, scalar_first=True)
 
     def height(time: float) -> float:

@@ -1,4 +1,4 @@
-"""A motion begins as the reduced model says: of every engine, support, body and state, in the first steps."""
+"""First steps of a motion against the reduced model, for every engine, support, body and state."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.simulation import open_scene
 
 STEPS, TIME_STEP = 100, 1e-4  # [s]
-# [m] and [rad]: a velocity half a step too early or late is off by 3e-6 m after these; 3e-7 and 1.3e-6 were
+# [m] and [rad]: a velocity half a step too early or late gives 3e-6 m after these; 3e-7 and 1.3e-6 were
 # measured
 DOUBLE, SINGLE = 1e-6, 3e-6
 # a couple that keeps a rim from rolling is found by a solver: with the softer contact of MuJoCo 4e-5
@@ -40,8 +40,8 @@ def problems() -> Iterator[tuple[str, str, str]]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("engine", "support", "kind"), list(problems()))
-def test_the_first_steps_are_those_of_the_model(engine: str, support: str, kind: str) -> None:
-    # of the reference size, in which a scene is
+def test_the_first_steps_equal_those_of_the_model(engine: str, support: str, kind: str) -> None:
+    # of the reference size of a scene
     column = Cylinder(semidiagonal=6.0, tan_alpha=0.3)
     body = WobblingFrame(column, slab_mass_ratio=0.7, columns=1) if kind.startswith("frame") else column
     tendon = Tendon(prestress=0.3, stiffness=4.0) if kind.endswith("tendon") else None

@@ -69,11 +69,11 @@ def run(case: Case, name: str, support: str = "recess", **options: object) -> Tr
 @pytest.mark.parametrize(("tendon", "gamma"), [(TENDONS[0], 0.0), (TENDONS[2], 0.0), (TENDONS[2], 1.0)])
 def test_a_release_in_the_recess_follows_the_reduced_model(name: str, tendon: Tendon, gamma: float) -> None:
     if name == "dart" and gamma:
-        return  # half a minute: a slab on flat ground, for a shorter time, is held to the same below
+        return  # half a minute: a slab on flat ground is compared below, for a shorter time
     case = released(tendon, gamma)
     engine, model = run(case, name), reduced.simulate(case)
     assert np.abs(engine.tilt - model.tilt).max() < RELEASED[name] * PIER.alpha
-    # the contact of MuJoCo's slab is sought, and keeps energy to 9e-5 under this tendon
+    # the contact of MuJoCo's slab is iterated, and conserves energy to 9e-5 under this tendon
     share = 20.0 * ENERGY[name] if gamma and name == "mujoco" else ENERGY[name]
     assert np.abs(engine.energy - model.energy).max() < share * model.energy[0]
     assert np.abs(engine.contact_force - model.contact_force)[1:-1].max() < FORCE[name]
@@ -86,7 +86,7 @@ def test_a_release_in_the_recess_follows_the_reduced_model(name: str, tendon: Te
 @pytest.mark.parametrize("name", ENGINES)
 @pytest.mark.parametrize("gamma", [0.0, 1.0])
 def test_a_release_on_flat_ground_follows_newton_and_euler(name: str, gamma: float) -> None:
-    # squat, so that the base wanders from its anchor by a hundred times the error of an engine
+    # squat, so that the base moves off its anchor by a hundred times the error of an engine
     squat, tendon = Cylinder(semidiagonal=6.0, tan_alpha=1.0), Tendon(prestress=0.3, stiffness=2.0)
     start, b = InitialState(0.3 * squat.alpha, rolling_rate=0.5), squat.base_radius
     duration = 0.8 if name in ("dart", "drake") else 1.5
@@ -101,7 +101,7 @@ def test_a_release_on_flat_ground_follows_newton_and_euler(name: str, gamma: flo
     )
     tilt, distance = rolled(pier, start.tilt, start.rolling_rate, engine.time)
     assert np.abs(engine.tilt - tilt).max() < ROLLED[name] * squat.alpha
-    # each gap has its part of the elongation
+    # each gap has its share of the elongation
     gaps = 2.0 if gamma else 1.0
     assert np.abs(engine.elongation - gaps * distance).max() < ROLLED[name] * b
     assert np.abs(engine.energy - engine.energy[0]).max() < 2.0 * ENERGY[name] * engine.energy[0]
@@ -114,7 +114,9 @@ def test_a_release_on_flat_ground_follows_newton_and_euler(name: str, gamma: flo
 @pytest.mark.parametrize(
     ("size", "tan_alpha", "scale", "gamma"), [(10.0, 0.1, 1.0, 0.0), (6.0, 0.2, 2.0, 1.0)]
 )
-def test_el_centro_from_rest(size: float, tan_alpha: float, scale: float, gamma: float, name: str) -> None:
+def test_el_centro_follows_the_model(
+    size: float, tan_alpha: float, scale: float, gamma: float, name: str
+) -> None:
     tendon, body = (
         Tendon(prestress=0.3, stiffness=4.0),
         body_of(gamma, Cylinder(semidiagonal=size, tan_alpha=tan_alpha)),
@@ -129,7 +131,7 @@ def test_el_centro_from_rest(size: float, tan_alpha: float, scale: float, gamma:
 
 
 @pytest.mark.parametrize("name", [name for name in ("mujoco", "pybullet") if name in ENGINES])
-def test_froude_scaling(name: str) -> None:
+def test_a_tendon_scales_by_froude(name: str) -> None:
     tendon, factor = Tendon(prestress=0.5, stiffness=3.0), 16.0
     large = Cylinder(semidiagonal=6.0 * factor, tan_alpha=PIER.tan_alpha)
     slow = InitialState(RELEASE.tilt, rolling_rate=RELEASE.rolling_rate / 4.0)
@@ -141,7 +143,7 @@ def test_froude_scaling(name: str) -> None:
     assert big.energy == pytest.approx(factor * small.energy, rel=1e-9)
 
 
-def test_a_swing_that_yields_the_tendon_says_so() -> None:
+def test_a_swing_that_yields_the_tendon_is_reported() -> None:
     free = run(released(Tendon(prestress=0.2, stiffness=4.0)), "mujoco")
     force = 0.2 + 0.9 * (free.peak_tendon_force - 0.2)
     late = InitialState(0.3 * PIER.alpha, tilt_rate=0.3)
@@ -175,13 +177,13 @@ def test_the_balance_of_a_scene_is_that_of_the_reduced_model(gamma: float) -> No
         assert scene.balance_tilt == pytest.approx(reduced.balance_tilt_of_case(case), rel=1e-12)
 
 
-def test_the_pull_is_the_gradient_of_the_energy() -> None:
+def test_the_tendon_force_is_the_gradient_of_its_energy() -> None:
     tendon = Restraint(prestress=3.0, stiffness=40.0, gaps=2, depth=1e-3)
     place, d = np.array([0.05, -0.02, 0.08]), 1e-6
     shifts = place + d * np.vstack([np.eye(3), -np.eye(3)])
     energy = tendon.energy(shifts, shifts, 0.0)
     slope = (energy[:3] - energy[3:]) / (2.0 * d)
-    # base and slab are pulled alike, so both gaps take their part of the energy
+    # base and slab have equal forces, so both gaps share the energy
     assert 2.0 * np.array(tendon.force(*place)) == pytest.approx(-slope, rel=1e-8)
     pulled = tendon.forces(place[None], place[None], 0.0)[:, 0]
     assert pulled == pytest.approx(tendon.force(*place), rel=1e-14)
