@@ -6,9 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble import comparison
+from rockwobble import comparison, simulate
 from rockwobble.compare import SUMMARY_COLUMNS
 from rockwobble.compare.comparison import driver
+from rockwobble.compare.comparison.prediction import close_pass
+from rockwobble.compare.comparison.summary import summary_row
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job, simulate_run
 from rockwobble.compare.storage.manifest import read_manifests
@@ -88,6 +90,12 @@ def test_columns_are_those_of_the_contract_in_its_order(made_up, case):
     summary = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary
     assert list(summary.columns[: len(CONTRACT)]) == CONTRACT
     assert list(summary.columns) == list(SUMMARY_COLUMNS)
+
+
+def test_every_value_of_a_row_has_its_column(case):
+    trace = simulate(case)
+    given = summary_row(case, "a", trace, "b", trace, prediction=close_pass(trace, 1e-5, case.length))
+    assert set(given) == set(SUMMARY_COLUMNS)
 
 
 def test_numbers_of_a_row(made_up, case, cylinder):

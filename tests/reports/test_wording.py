@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import math
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -27,34 +28,65 @@ SENTENCES = {
 }
 
 
+@cache
+def modules() -> list[ast.Module]:
+    """Syntax trees of the package."""
+    return [ast.parse(path.read_text("utf-8")) for part in PARTS for path in (ROOT / part).rglob("*.py")]
+
+
 def keys_in_code() -> set[str]:
-    """Constants given as `key` to a `Finding`, in whatever expression."""
+    """Constants given as `key` to a `Finding`, or to a function that passes its `key` on."""
+    shared = {name: begin for tree in modules() for name, begin in passing(tree).items() if name[0] != "_"}
     keys = set()
-    for path in (path for part in PARTS for path in (ROOT / part).rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Finding":
-                (key,) = (each.value for each in node.keywords if each.arg == "key")
-                keys |= {each.value for each in ast.walk(key) if isinstance(each, ast.Constant)}
-    return {key for key in keys if isinstance(key, str) and re.fullmatch(r"\w+\.\w+", key)}
+    for tree in modules():
+        before = {"Finding": "", **shared, **passing(tree)}
+        for call in calls(tree):
+            if (name := getattr(call.func, "id", "")) in before:
+                given = [each.value for each in call.keywords if each.arg == "key"] or call.args[:1]
+                keys |= {before[name] + text for key in given for text in texts(key)}
+    return {key for key in keys if re.fullmatch(r"\w+\.\w+", key)}
+
+
+def passing(tree: ast.Module) -> dict[str, str]:
+    """Functions whose argument `key` becomes that of a `Finding`, each with the text put before it."""
+    return {
+        function.name: "".join(texts(key.values[0])) if isinstance(key, ast.JoinedStr) else ""
+        for function in tree.body
+        if isinstance(function, ast.FunctionDef) and ast.unparse(function.args).startswith("key: str")
+        for call in calls(function)
+        for key in (each.value for each in call.keywords if each.arg == "key")
+        if getattr(call.func, "id", "") == "Finding"
+    }
+
+
+def calls(tree: ast.AST) -> list[ast.Call]:
+    return [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+
+
+def texts(node: ast.AST) -> set[str]:
+    """Texts that an expression may be, without those that are put together, compared or computed."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return {node.value}
+    parts = () if isinstance(node, ast.JoinedStr | ast.Compare | ast.Call) else ast.iter_child_nodes(node)
+    return {text for part in parts for text in texts(part)}
 
 
 def texts_of_code() -> set[object]:
     """All constants of the code: a key may stand in a table before it is given."""
-    trees = [ast.parse(path.read_text("utf-8")) for part in PARTS for path in (ROOT / part).rglob("*.py")]
-    return {node.value for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+    return {node.value for tree in modules() for node in ast.walk(tree) if isinstance(node, ast.Constant)}
 
 
 def test_keys_in_the_code_are_those_of_the_word_file():
     lines = {key.partition(":")[0] for key in SENTENCES}
     assert keys_in_code() <= lines
-    texts = texts_of_code()
+    stated = texts_of_code()
 
     def parts(key: str) -> set[str]:
         """Texts in the code that may make a key, as "mode." or the name of a criterion."""
         group, _, name = key.partition(".")
         return {key, f"{group}.", name, key.removeprefix("limit_")}
 
-    assert not [key for key in lines if not texts & parts(key)]
+    assert not [key for key in lines if not stated & parts(key)]
 
 
 def values_of(line: str, number: Value, text: Value) -> dict[str, Value]:
