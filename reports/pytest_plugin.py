@@ -122,8 +122,8 @@ class ChangedError(Exception):
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> SuiteFile | None:
     """Collect suite files."""
     if file_path.name.endswith(ENDING):
-        found: SuiteFile = SuiteFile.from_parent(parent, path=file_path)
-        return found
+        suite_file: SuiteFile = SuiteFile.from_parent(parent, path=file_path)
+        return suite_file
     return None
 
 

@@ -75,8 +75,8 @@ class Ensemble(Results, kind=KIND):
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> case = rw.Case(pier, rw.el_centro_1940(), duration=15.0)
     >>> both = [rw.Run(None, "recess"), rw.Run(None, "flat")]
-    >>> found = rw.ensemble(case, runs=[], models=both, copies=5, workers=1)
-    >>> list(found.methods["runs"]), found.members.shape
+    >>> study = rw.ensemble(case, runs=[], models=both, copies=5, workers=1)
+    >>> list(study.methods["runs"]), study.members.shape
     ([5, 5], (10, 6))
     """
 
@@ -160,8 +160,8 @@ def ensemble(
     --------
     >>> from rockwobble.models import Cylinder, el_centro_1940
     >>> case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
-    >>> found = ensemble(case, runs=[], copies=5, workers=1)
-    >>> found.methods[["method", "runs", "failed"]].values.tolist()
+    >>> study = ensemble(case, runs=[], copies=5, workers=1)
+    >>> study.methods[["method", "runs", "failed"]].values.tolist()
     [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
     plan = Copies(copies=copies, perturbation=perturbation, seed=seed)
@@ -315,14 +315,14 @@ def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.Data
     rows = []
     for against, method in itertools.combinations(methods, 2):
         both = pairs_in(members, method, against)
-        found = both.contrast()
-        if found is not None:
+        contrast = both.contrast()
+        if contrast is not None:
             least, most = both.ratio_bounds()
             rows.append(
                 {
                     "method": method,
                     "against": against,
-                    **found.columns(),
+                    **contrast.columns(),
                     "masked": ", ".join(both.members[both.failed]),
                     "ratio_least": least,
                     "ratio_most": most,

@@ -126,8 +126,8 @@ class Grid(CompactRepr, GridPlan):
     --------
     >>> import rockwobble as rw
     >>> grid = Grid(semidiagonals=[3, 6], tan_alphas=[0.1, 0.2], scales=[1, 2], motions=[rw.el_centro_1940()])
-    >>> found = rw.sweep(grid, workers=1)
-    >>> len(found.table)
+    >>> swept = rw.sweep(grid, workers=1)
+    >>> len(swept.table)
     8
     """
 

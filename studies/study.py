@@ -52,8 +52,8 @@ class Study(Generic[T, R]):
     @staticmethod
     def row(task: Any) -> pd.DataFrame:
         """Row or rows of a task, computed in any process from the task alone."""
-        found: pd.DataFrame = task.run()
-        return found
+        rows: pd.DataFrame = task.run()
+        return rows
 
     def results(self, tables: list[pd.DataFrame]) -> R:
         """Results of the tables of all tasks, in their order."""
@@ -121,7 +121,7 @@ class Study(Generic[T, R]):
         order = np.random.default_rng(0).permutation(len(tasks)) if cost is None else np.arange(len(tasks))
         with nullcontext() if folder is None else open_table_cache(folder, self.kind, self.key) as cache:
             try:
-                found = run_tasks(
+                tables = run_tasks(
                     self.row,
                     [tasks[place] for place in order],
                     workers=workers,
@@ -139,15 +139,15 @@ class Study(Generic[T, R]):
                     "nothing is kept" if cache is None else f"{cache.count} {self.what} are kept in {folder}"
                 )
                 raise IncompleteError(f"{error}; {kept}") from None
-            results = self.results(self._tables(tasks, [found[place] for place in np.argsort(order)]))
+            results = self.results(self._tables(tasks, [tables[place] for place in np.argsort(order)]))
             if save is not None:
                 save(results)
         return results
 
-    def _tables(self, tasks: Sequence[T], found: Sequence[pd.DataFrame | FailedTask]) -> list[pd.DataFrame]:
+    def _tables(self, tasks: Sequence[T], outcomes: Sequence[pd.DataFrame | FailedTask]) -> list[pd.DataFrame]:
         tables: list[pd.DataFrame] = []
         died: list[str] = []
-        for task, each in zip(tasks, found, strict=True):
+        for task, each in zip(tasks, outcomes, strict=True):
             table = self.lost(task, each.why) if isinstance(each, FailedTask) else each
             if table is not None:
                 tables.append(table)

@@ -257,10 +257,10 @@ def sweep(
     --------
     >>> from rockwobble.models import el_centro_1940
     >>> grid = Grid(semidiagonals=[2.0, 6.0], tan_alphas=[0.2], scales=[1.0, 3.0], motions=[el_centro_1940()])
-    >>> found = sweep(grid, workers=1)
-    >>> found
+    >>> swept = sweep(grid, workers=1)
+    >>> swept
     Sweep(runs 4, stands 2, overturned 2)
-    >>> found.table[["semidiagonal", "scale", "outcome"]].values.tolist()
+    >>> swept.table[["semidiagonal", "scale", "outcome"]].values.tolist()
     [[2.0, 1.0, 'stands'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'stands'], [6.0, 3.0, 'overturned']]
 
     Every case of a suite with each of its runs:
@@ -280,7 +280,7 @@ def sweep(
         workers=workers,
         scheduler=scheduler,
         progress=progress,
-        save=None if out is None else lambda found: found.save(out),
+        save=None if out is None else lambda swept: swept.save(out),
     )
 
 

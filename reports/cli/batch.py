@@ -226,12 +226,12 @@ def _members(
     refuse(context, ignored, f"does not go with {motions.option}: its motions are the members")
     case = unread(problem).case()
     level = 3.0 if peak is None else peak
-    found, source = motions.read(copies.seed)
+    ensemble, source = motions.read(copies.seed)
     target = level * case.gravity * case.cylinder.tan_alpha
     if not target > 0.0:
         raise ValueError(f"--peak must be positive [g tan alpha], got {level:g}")
     # named by the motion alone: the others are all the same
-    scaled = [motion.scaled(target / motion.peak) for motion in found]
+    scaled = [motion.scaled(target / motion.peak) for motion in ensemble]
     members = [dataclasses.replace(case, name=motion.name, motion=motion) for motion in scaled]
     return members, f"{source}, with peaks of {level:g} g tan alpha"
 

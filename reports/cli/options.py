@@ -69,11 +69,11 @@ def numbers(text: str) -> list[float]:
 
 def levels(text: str) -> list[float]:
     """Return the numbers of a list, or of a range, which is even in the logarithm."""
-    found = numbers(text)
-    if ":" not in text or not 0.0 < found[0] < found[-1]:
-        return found
-    ratio, last = math.log(found[-1] / found[0]), len(found) - 1
-    return [found[0] * math.exp(ratio * place / last) for place in range(len(found))]
+    values = numbers(text)
+    if ":" not in text or not 0.0 < values[0] < values[-1]:
+        return values
+    ratio, last = math.log(values[-1] / values[0]), len(values) - 1
+    return [values[0] * math.exp(ratio * place / last) for place in range(len(values))]
 
 
 def _number(text: str, allowed: str) -> float:

@@ -48,17 +48,17 @@ def show(store: Store, as_json: Json = False) -> None:
         from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
 
         going = unfinished_results(store)
-        found = read_manifests(store) if not going or (store / MANIFEST).exists() else []
-    states = [{name: file_state(store, made, name) for name in made.files} for made in found]
+        manifests = read_manifests(store) if not going or (store / MANIFEST).exists() else []
+    states = [{name: file_state(store, made, name) for name in made.files} for made in manifests]
     if as_json:
         results = [
             dataclasses.asdict(made) | {"complete": True, "states": files}
-            for made, files in zip(found, states, strict=True)
+            for made, files in zip(manifests, states, strict=True)
         ]
         results += [{**each, "complete": False} for each in going]
         print(plain_json.dumps({"folder": str(store), "results": results}, indent=2))
     else:
-        for made, files in zip(found, states, strict=True):
+        for made, files in zip(manifests, states, strict=True):
             _print(store, made, files)
         for each in going:
             values: dict[str, Value] = {"count": each["done"], "count_all": each["total"]}
@@ -177,9 +177,9 @@ def report(
             raise ValueError(
                 f"the folder {place} holds {listed}: choose another by --out, or write there by --overwrite"
             )
-        found = {kind: stored_page(kind, folder) for kind in kinds}
+        drawn = {kind: stored_page(kind, folder) for kind in kinds}
         drawn = {
-            kind: {**page.files(), **page.exports(drawings, width=inches)} for kind, page in found.items()
+            kind: {**page.files(), **page.exports(drawings, width=inches)} for kind, page in drawn.items()
         }
         if data:
             if Fragility.kind not in drawn:
@@ -258,9 +258,9 @@ def view(
     require_motion(case.name, [rw.simulate(case)])  # before an engine runs for seconds
 
     def view_of_case(progress: ProgressCallback) -> View:
-        found = View.of(rw.comparison(case, runs=[run], progress=progress), case.name)
-        require_motion(case.name, found.comparison.traces.values())
-        return found
+        shown = View.of(rw.comparison(case, runs=[run], progress=progress), case.name)
+        require_motion(case.name, shown.comparison.traces.values())
+        return shown
 
     return Work(view_of_case, case_lines(case), opened=opened)
 

@@ -209,11 +209,11 @@ def check(
         for group in only or ():
             require_one_of("--only", group, tuple(GROUPS))
         with shown_progress("checks") as progress:
-            found = checks_of(**given, only=only, progress=progress)
-        print_checks(Console(), found)
-        print(headline(found))
-        output.write(found, plan_of(context))
-    if not found.passed:
+            checks = checks_of(**given, only=only, progress=progress)
+        print_checks(Console(), checks)
+        print(headline(checks))
+        output.write(checks, plan_of(context))
+    if not checks.passed:
         raise typer.Exit(FAILED)
 
 
@@ -298,9 +298,9 @@ def certify(
             complain(f"a check failed, and nothing is certified: {failed[0]}")
             raise typer.Exit(FAILED)
         with shown_progress("cases") as progress:
-            found = make(subject, results, progress)
-        write_certificate({**found, "plan": plan_of(context)}, out)
-    print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
+            certificate = make(subject, results, progress)
+        write_certificate({**certificate, "plan": plan_of(context)}, out)
+    print(f"{out}: {len(certificate['claims'])} claims, {len(certificate['fingerprint'])} cases")
 
 
 def verify(

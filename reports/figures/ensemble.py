@@ -39,14 +39,14 @@ _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
 
 
-def pictures(found: Ensemble) -> list[Picture]:
+def pictures(ensemble: Ensemble) -> list[Picture]:
     """Return the distribution of each method, and the ratios of the members of the main pairs."""
-    rows = [row for row in main_pairs(found.methods, found.contrasts) if row["compared"]]
-    models = found.methods.loc[found.methods["own_model"] == "", "method"]
-    panels = [distributions(found.members, list(models)), *([_ratios(found, rows)] if rows else [])]
+    rows = [row for row in main_pairs(ensemble.methods, ensemble.contrasts) if row["compared"]]
+    models = ensemble.methods.loc[ensemble.methods["own_model"] == "", "method"]
+    panels = [distributions(ensemble.members, list(models)), *([_ratios(ensemble, rows)] if rows else [])]
     picture = Picture(
         name="ensemble",
-        caption=caption("ensemble", share=MARGIN, name=found.facts.get("members")),
+        caption=caption("ensemble", share=MARGIN, name=ensemble.facts.get("members")),
         panels=panels,
         legend="panels",
     )
@@ -91,8 +91,8 @@ def peak_shares(
         yield Line(x=x[-1:], y=y[-1:], style=mark, size=7.0, clip=False)
 
 
-def _ratios(found: Ensemble, rows: list[Row]) -> Panel:
-    both = [pairs_in(found.members, row["method"], row["against"]) for row in rows]
+def _ratios(ensemble: Ensemble, rows: list[Row]) -> Panel:
+    both = [pairs_in(ensemble.members, row["method"], row["against"]) for row in rows]
     logarithms = [each.log_ratios() for each in both]
     low, high = ratio_span(np.concatenate(logarithms))
     layers: list[Line | Rule | Text] = [*margin_rules(MARGIN)]
@@ -140,17 +140,17 @@ def _bar(row: Row, ends: str, place: int, span: tuple[float, float], name: str, 
 
 def _beyond(ratios: Array, place: int, low: float, high: float) -> list[Line | Text]:
     """Return a triangle at each edge for the members that overturn by one method alone, and their number."""
-    found: list[Line | Text] = []
+    marks: list[Line | Text] = []
     for edge, side, which in ((low, "left", ratios == 0.0), (high, "right", np.isinf(ratios))):
         if which.any():
             mark = Style(colour=_BEYOND, dash="none", symbol=f"triangle-{side}")
             inside = edge * (high / low) ** (0.02 if side == "left" else -0.02)
             anchor: Literal["left", "right"] = "left" if side == "left" else "right"
-            found += [
+            marks += [
                 Line(x=np.array([edge]), y=np.array([place - 0.2]), style=mark, size=7.0, clip=False),
                 Text(x=inside, y=place - 0.2, text=str(which.sum()), colour=_BEYOND, anchor=anchor),
             ]
-    return found
+    return marks
 
 
 def ratio_span(logarithms: Array) -> tuple[float, float]:

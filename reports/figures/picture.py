@@ -66,8 +66,8 @@ class Axis:
 def log_ticks(low: float, high: float) -> list[float]:
     """Return round places for the ticks of a logarithmic axis, few enough that their numbers do not touch."""
     if high / low > 4.0:
-        found = [tick for tick in _DECADES if low <= tick <= high]
-        return found if len(found) <= _MOST_TICKS else [t for t in found if math.log10(t).is_integer()]
+        ticks = [tick for tick in _DECADES if low <= tick <= high]
+        return ticks if len(ticks) <= _MOST_TICKS else [t for t in ticks if math.log10(t).is_integer()]
     step = next((s for s in _STEPS if (high - low) / s <= _MOST_TICKS), _STEPS[-1])
     first = math.ceil(low / step)
     return [round(index * step, 6) for index in range(first, math.floor(high / step) + 1)]

@@ -324,8 +324,8 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
 
 def colours(shades: Shades) -> Colormap:
     """Return the colour map of a scale, in steps where it has some."""
-    found: Colormap = mpl.colormaps[shades.colours]
-    return found.resampled(shades.steps) if shades.steps else found
+    colour_map: Colormap = mpl.colormaps[shades.colours]
+    return colour_map.resampled(shades.steps) if shades.steps else colour_map
 
 
 def _colour_bar(drawn: Figure, places: NDArray[np.object_], shades: Shades) -> None:

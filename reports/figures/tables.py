@@ -7,10 +7,10 @@ from rockwobble.compare.storage.results import Results
 from .picture import Axis, Line, Panel, Picture
 
 
-def pictures(found: Results) -> list[Picture]:
+def pictures(results: Results) -> list[Picture]:
     """Return a picture of each table that begins with numbers: a panel for each other column of them."""
     drawn = []
-    for name, table in getattr(found, "tables", {}).items():
+    for name, table in getattr(results, "tables", {}).items():
         numbers = table.select_dtypes("number").astype(float)
         if len(numbers.columns) < 2 or numbers.columns[0] != table.columns[0]:
             continue

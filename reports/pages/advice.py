@@ -46,18 +46,18 @@ PLAN = ("mass", "copies", "perturbation", "seed")
 Row = dict[str, object]
 
 
-def page_of(found: Advice) -> Page:
+def page_of(advice: Advice) -> Page:
     """Page of an advice."""
-    drawn, findings, facts = list(pictures(found)), found.findings(), found.facts
+    drawn, findings, facts = list(pictures(advice)), advice.findings(), advice.facts
     opening = [each for each in findings if _opens(each)]
-    plain = [each for each in findings if each.key in _PLAIN and found.moves]
+    plain = [each for each in findings if each.key in _PLAIN and advice.moves]
     beside = [*findings.of("compared"), *(each for each in findings.of("vertical") if each not in opening)]
     parts = ("together", "wall")
     acting = [each for part in parts for each in findings.of(part) if each.key not in _DEMAND_DETAILS]
     values = {
         "title": f"{facts['case']}: {verdict(findings)}",
-        "about": found.manifest,
-        "moves": found.moves,
+        "about": advice.manifest,
+        "moves": advice.moves,
         "drawn": [picture.name for picture in drawn],
         "opening": _said(opening),
         "problem_lines": [
@@ -73,33 +73,33 @@ def page_of(found: Advice) -> Page:
                 "short": sentence(findings.of(topic)[0], short=True),
             }
             | {each: sentence(criterion(topic, each)) for each in GRADES}
-            for topic, grade in found.grades.items()
+            for topic, grade in advice.grades.items()
         ],
         "part": _TOP["columns" in facts["cylinder"]],
-        "numbers": list(_numbers(found, findings)),
+        "numbers": list(_numbers(advice, findings)),
         "place": _BELOW[support_named(facts["support"]).is_recess],
         "weight": " ".join(_said(findings.of("weight"))),
         "weight_short": " ".join(statement(each, short=True) for each in findings.of("weight")),
-        "demanded": list(_demand_rows(found, findings)),
-        "demand_columns": list(_demand_columns(found)),
+        "demanded": list(_demand_rows(advice, findings)),
+        "demand_columns": list(_demand_columns(advice)),
         "wall": " ".join(
             statement(each, short=True) for each in findings.of("wall") if each.key not in _DEMAND_DETAILS
         ),
         "acting": " ".join(_said([*acting, *(each for each in findings if each.key == "demand.weaker")])),
-        "steps": _steps(found, findings),
-        "next": next(iter(_steps(found, findings, short=True)), ""),
-        "groups": _groups(found, findings),
+        "steps": _steps(advice, findings),
+        "next": next(iter(_steps(advice, findings, short=True)), ""),
+        "groups": _groups(advice, findings),
         "perturbation": facts["perturbation"],
         "seed": facts["seed"],
         "closed": CLOSED_TILT,
         "record_lines": _said(each for each in findings if each.key == "case.records"),
         "demand_lines": _said(each for each in findings if each.key in _DEMAND_DETAILS),
         "checks": _said([*findings.of("evidence"), *findings.of("planar")]),
-        "shares": planar_shares(found.planar) if len(found.planar) and not found.yielded else [],
+        "shares": planar_shares(advice.planar) if len(advice.planar) and not advice.yielded else [],
         "assumptions": _said(findings.of("assumption")),
     }
     blocks = {"signed": _SIGNED}
-    if found.moves:
+    if advice.moves:
         peaks, details = map(figure_html, parts_of(*drawn))
         blocks |= {"beside": '<div class="beside"><div>', "peaks": f"</div>{peaks}</div>", "details": details}
     return Page(name="advice", template="advice", values=values, pictures=drawn, blocks=blocks)
@@ -132,29 +132,29 @@ def _opens(finding: Finding) -> bool:
     return group != "vertical" or finding.level != "note"
 
 
-def _groups(found: Advice, findings: Findings) -> list[dict[str, Any]]:
+def _groups(advice: Advice, findings: Findings) -> list[dict[str, Any]]:
     """Rows of the groups with their names."""
     names = {each.runs: sentence(each, short=True) for each in findings.of("group")}
-    rows = found.groups.to_dict("records")
+    rows = advice.groups.to_dict("records")
     return [{str(key): value for key, value in row.items()} | {"name": names[row["group"]]} for row in rows]
 
 
-def _numbers(found: Advice, findings: Findings) -> Iterator[Row]:
+def _numbers(advice: Advice, findings: Findings) -> Iterator[Row]:
     """Rows of the numbers: the run as given, and the order statistic that 95 % of each group make."""
-    alpha = math.degrees(found.cylinder.alpha)
+    alpha = math.degrees(advice.cylinder.alpha)
 
     def row(name: str, overturn: str, covered: str, peak: float, without: str, form: str = ".3g") -> Row:
-        sizes = (alpha * peak, found.top(peak))
+        sizes = (alpha * peak, advice.top(peak))
         moved = [without if math.isinf(peak) else number(each, form) for each in sizes]
         covered = "" if math.isinf(peak) else covered
         return {"name": name, "overturn": overturn, "covered": covered, "tilt": moved[0], "top": moved[1]}
 
-    fallen = found.overturned or found.yields
-    ends = _cell("yields" if found.yields else "overturns" if fallen else "stands")
-    copies = found.members[found.members["group"] == COPIES]["peak_tilt"]
-    digits = scattered(scatter_of(found.peak, copies), most=3)
-    yield row(_cell("as_given"), ends, "", math.inf if fallen else found.peak, ends, digits)
-    for group in _groups(found, findings):
+    fallen = advice.overturned or advice.yields
+    ends = _cell("yields" if advice.yields else "overturns" if fallen else "stands")
+    copies = advice.members[advice.members["group"] == COPIES]["peak_tilt"]
+    digits = scattered(scatter_of(advice.peak, copies), most=3)
+    yield row(_cell("as_given"), ends, "", math.inf if fallen else advice.peak, ends, digits)
+    for group in _groups(advice, findings):
         known, peak, yields = group["runs"] - group["failed"], group["peak_tilt_95"], group.get("yielded", 0)
         if group["single"]:
             ends = _cell("overturns" if math.isinf(peak) else "stands")
@@ -173,12 +173,12 @@ def _cell(name: str, **values: Value) -> str:
     return sentence(Finding(key=f"number.{name}", values=values))
 
 
-def _demand_rows(found: Advice, findings: Findings) -> Iterator[Row]:
+def _demand_rows(advice: Advice, findings: Findings) -> Iterator[Row]:
     """Rows of the design demands, as a designer enters them; each names the group that it is of."""
-    rows = {str(row["demand"]): row for row in found.demands.to_dict("records")}
+    rows = {str(row["demand"]): row for row in advice.demands.to_dict("records")}
     missing = {str(each.values["reason"]): each for each in findings.of("demand") if "reason" in each.values}
     if "moment" in rows:
-        moment, b = rows["moment"], found.cylinder.base_radius
+        moment, b = rows["moment"], advice.cylinder.base_radius
         forces = {name: moment[name] / b for name in ("per_tonne", "for_mass")}
         rows["wall_force"] = moment | forces | {"unit": "weights"}
     for demand in (each for each in _DEMANDS if each in rows):
@@ -196,7 +196,7 @@ def _demand_rows(found: Advice, findings: Findings) -> Iterator[Row]:
             "name": name,
             "demand": demand,
             **_sizes(row, "kNm" if demand == "moment" else "kN"),
-            "of": _of(found, row),
+            "of": _of(advice, row),
         }
 
 
@@ -213,17 +213,17 @@ def _sizes(row: Mapping[Any, Any], unit: str) -> Row:
     return cells
 
 
-def _of(found: Advice, row: Mapping[Any, Any]) -> str:
+def _of(advice: Advice, row: Mapping[Any, Any]) -> str:
     """Number and group of the runs whose demand is covered, and their shaking."""
-    return sentence(Finding(key="demand.of", values=covering_values(found, row)))
+    return sentence(Finding(key="demand.of", values=covering_values(advice, row)))
 
 
-def _demand_columns(found: Advice) -> Iterator[list[str]]:
+def _demand_columns(advice: Advice) -> Iterator[list[str]]:
     """Columns of the design demands; forces of a body only where its mass was given."""
     yield from (["name", "demand", "words"], ["value", "value", "words"], ["tonne", "per tonne", "words"])
-    if found.facts["mass"] is not None:
-        yield ["mass", _cell("one_column" if "columns" in found.facts["cylinder"] else "in_all"), "words"]
-    if "peak" in found.demands and found.demands["peak"].notna().any():  # an earlier version stated none
+    if advice.facts["mass"] is not None:
+        yield ["mass", _cell("one_column" if "columns" in advice.facts["cylinder"] else "in_all"), "words"]
+    if "peak" in advice.demands and advice.demands["peak"].notna().any():  # an earlier version stated none
         yield ["peak", "peak", "words"]
     yield ["of", "not exceeded by", "words"]
 
@@ -233,15 +233,15 @@ def _round(value: float) -> str:
     return f"{float(f'{value:.3g}'):.10g}" if value >= 1.0 else number(value)
 
 
-def _ratios_of_tendon(found: Advice) -> dict[str, str]:
+def _ratios_of_tendon(advice: Advice) -> dict[str, str]:
     """Options that state the tendon by ratios, whichever the user gave."""
-    tendon = found.facts.get("tendon") or {}
+    tendon = advice.facts.get("tendon") or {}
     return {f"tendon_{name}": f"{tendon[name]:.6g}" for name in ("prestress", "stiffness") if name in tendon}
 
 
-def _steps(found: Advice, findings: Findings, *, short: bool = False) -> list[str]:
+def _steps(advice: Advice, findings: Findings, *, short: bool = False) -> list[str]:
     """Lines of what to do next: words, and the whole command where there is one."""
-    commands = _calls(found) if found.facts["options"] is None else _commands(found)
+    commands = _calls(advice) if advice.facts["options"] is None else _commands(advice)
     return [
         _cell(
             "step",
@@ -252,14 +252,14 @@ def _steps(found: Advice, findings: Findings, *, short: bool = False) -> list[st
     ]
 
 
-def _calls(found: Advice) -> dict[str, str]:
+def _calls(advice: Advice) -> dict[str, str]:
     """Python calls for the next steps, where `case` is defined."""
-    run = f'rw.Run("{DEFAULT_ENGINE}", "{found.facts["support"]}")'
+    run = f'rw.Run("{DEFAULT_ENGINE}", "{advice.facts["support"]}")'
     return {
         "friction_unknown": "dataclasses.replace(case, friction=...)",
         "budget": f"rw.comparison(case, runs=[{run}], budget=True)",
         "engine": f"rw.advise(case, {run})",
-        "spectrum": f"rw.spectrum({found.cylinder.tan_alpha:.6g}, case.motion)",
+        "spectrum": f"rw.spectrum({advice.cylinder.tan_alpha:.6g}, case.motion)",
         "ensemble": "rw.ensemble(case)",
         "clearance": f'rw.advise(case, support="{RING}")',
         "in_a_recess": f'rw.advise(case, support="{RECESS}")',
@@ -268,8 +268,8 @@ def _calls(found: Advice) -> dict[str, str]:
     }
 
 
-def _commands(found: Advice) -> dict[str, str]:
-    options, support = found.facts["options"], found.facts["support"]
+def _commands(advice: Advice) -> dict[str, str]:
+    options, support = advice.facts["options"], advice.facts["support"]
     # the mass of a column states a tendon, too
     plan = [name for name in PLAN if name != "mass" or not options.get("tendon_force")]
     problem = {name: value for name, value in options.items() if name not in plan}
@@ -277,7 +277,7 @@ def _commands(found: Advice) -> dict[str, str]:
         "friction_unknown": command_line("advise", options | {"friction": "MU"}),
         "budget": command_line("compare", problem | {"support": support, "budget": True}),
         "engine": command_line("advise", options | {"engine": DEFAULT_ENGINE}),
-        "spectrum": spectrum_line(options | _ratios_of_tendon(found), found.cylinder.tan_alpha),
+        "spectrum": spectrum_line(options | _ratios_of_tendon(advice), advice.cylinder.tan_alpha),
         "ensemble": command_line("ensemble", problem | {"support": support}),
         "clearance": command_line("advise", options | {"support": RING}),
         "in_a_recess": command_line("advise", options | {"support": RECESS}),

@@ -17,17 +17,17 @@ from .table import NONE, Row, number
 from .wording import sentence, statement
 
 
-def print_checks(console: Console, found: Checks) -> None:
+def print_checks(console: Console, checks: Checks) -> None:
     """Print failures, what has no baseline, what could not run, and one line for each group."""
-    for result in found.results:
+    for result in checks.results:
         if result.outcome not in (PASSED, NOT_RUN):
             style = "bold red" if result.failed else "yellow"
             text = f"{result.outcome}: {result.subject}, {in_words(result)}"
             console.print(text, style=style, highlight=False, markup=False, soft_wrap=True)
-    reasons = dict.fromkeys(f"{each.name}: {each.note}" for each in found.results if each.outcome == NOT_RUN)
+    reasons = dict.fromkeys(f"{each.name}: {each.note}" for each in checks.results if each.outcome == NOT_RUN)
     for text in reasons:
         console.print(f"not run: {text}", highlight=False, markup=False, soft_wrap=True)
-    for group, of_group in _by_group(found.results).items():
+    for group, of_group in _by_group(checks.results).items():
         counts = Counter(result.outcome for result in of_group)
         words = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
         console.print(f"{TITLES.get(group, 'engines')}: {words}", highlight=False, markup=False)
@@ -36,7 +36,7 @@ def print_checks(console: Console, found: Checks) -> None:
                 console.print(f"  {note}", highlight=False, markup=False, soft_wrap=True)
 
 
-def page_of(found: Checks) -> Page:
+def page_of(checks: Checks) -> Page:
     """Return the report: what failed first, then every check, group by group."""
 
     def rows(chosen: Sequence[Result]) -> list[Row]:
@@ -44,43 +44,43 @@ def page_of(found: Checks) -> Page:
         return [{key: str(cell).replace("<", "&lt;") for key, cell in _row(f).items()} for f in chosen]
 
     groups = []
-    for group, of_group in _by_group(found.results).items():
+    for group, of_group in _by_group(checks.results).items():
         bad = sum(result.failed for result in of_group)
         counts = {"count": bad or math.nan, "count_all": len(of_group)}
         state = Finding(key="check.group", values=counts | {"name": TITLES.get(group, "engines")})
         groups.append((sentence(state), rows(of_group)))
     values = {
-        "headline": headline(found),
-        "failed": rows(found.failures),
+        "headline": headline(checks),
+        "failed": rows(checks.failures),
         "groups": groups,
-        "about": found.manifest,
+        "about": checks.manifest,
     }
     return Page(name="check", template="check", values=values)
 
 
-def as_json(found: Checks, plan: str = "") -> str:
+def as_json(checks: Checks, plan: str = "") -> str:
     """Return everything, with the floats to the last bit, and the hash of the command."""
     from rockwobble.models.plain_json import dumps
 
     content = {
-        "passed": found.passed,
-        "counts": found.headline(),
+        "passed": checks.passed,
+        "counts": checks.headline(),
         **({"plan": plan} if plan else {}),
-        **found.facts,
-        "results": found.results,
+        **checks.facts,
+        "results": checks.results,
     }
     return dumps(content, indent=1) + "\n"
 
 
-def as_junit(found: Checks, plan: str = "") -> str:
+def as_junit(checks: Checks, plan: str = "") -> str:
     """Return a JUnit report with one test case for each check, in a suite for each group.
 
     The hash of the command is a property of each suite.
     """
     from xml.etree import ElementTree
 
-    root = ElementTree.Element("testsuites", name="rockwobble check", time=f"{found.facts['seconds']:.3f}")
-    for group, of_group in _by_group(found.results).items():
+    root = ElementTree.Element("testsuites", name="rockwobble check", time=f"{checks.facts['seconds']:.3f}")
+    for group, of_group in _by_group(checks.results).items():
         outcomes = Counter(_kind(result) for result in of_group)
         counts = {"tests": len(of_group), "failures": outcomes["failure"], "skipped": outcomes["skipped"]}
         said = {
@@ -111,9 +111,9 @@ def as_junit(found: Checks, plan: str = "") -> str:
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def headline(found: Checks) -> str:
+def headline(checks: Checks) -> str:
     """Return the result of all checks, in one sentence."""
-    return statement(found.findings()[0])
+    return statement(checks.findings()[0])
 
 
 def in_words(result: Result) -> str:

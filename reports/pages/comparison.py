@@ -175,9 +175,9 @@ def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
         groups: dict[str, list[tuple[int, str]]] = {}
         for place, view in enumerate(views):
             groups.setdefault(group_of(view.case.name), []).append((place, view.case.name))
-        found = {f"open-{place}": f'<template id="case-{place}">' for place in range(len(views))}
+        blocks = {f"open-{place}": f'<template id="case-{place}">' for place in range(len(views))}
         return {
-            **found,
+            **blocks,
             "close": "</template>",
             "chooser": fragment("comparison/chooser.html.j2", groups=groups),
         }
@@ -261,17 +261,17 @@ def _degrees(angle: float, uncertainty: float) -> float | None:
 
 def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
     """Return a line for each column of the summary, and the columns of that table: one for each row."""
-    found = list(rows_of(rows))
+    listed = list(rows_of(rows))
     lines: list[Row] = [
         {
             "all": "All numbers",
             "name": name.replace("_", " ") + (f" [{unit}]" if unit else ""),
-            **{str(index): getattr(row, name) for index, row in enumerate(found)},
+            **{str(index): getattr(row, name) for index, row in enumerate(listed)},
         }
         for name, (unit, _) in SUMMARY_COLUMNS.items()
         if name not in ("case", "run", "reference")
     ]
-    columns = [[str(index), f"{row.run} − {row.reference}", ".4g"] for index, row in enumerate(found)]
+    columns = [[str(index), f"{row.run} − {row.reference}", ".4g"] for index, row in enumerate(listed)]
     return lines, [["name", "column", "words"], *columns]
 
 

@@ -14,7 +14,7 @@ from .wording import lines_of, sentence, statement
 _ANSWERS = tuple(f"ensemble.{name}" for name in ("no_pairs", "equivalent", "different", "undecided", "few"))
 
 
-def page_of(found: Ensemble) -> Page:
+def page_of(ensemble: Ensemble) -> Page:
     """Return the page of an ensemble."""
     rows = [
         {str(name): value for name, value in row.items()}
@@ -22,24 +22,24 @@ def page_of(found: Ensemble) -> Page:
         | {"only": row["overturned"] - row["both_overturned"]}
         | {"only_there": row["against_overturned"] - row["both_overturned"]}
         | {"neither": row["count"] - row["overturned"] - row["against_overturned"] + row["both_overturned"]}
-        for row in found.contrasts.to_dict("records")
+        for row in ensemble.contrasts.to_dict("records")
     ]
-    findings = found.findings()
-    one_column = any("one_column" in codes_in(cell) for cell in found.members["diagnostics"])
+    findings = ensemble.findings()
+    one_column = any("one_column" in codes_in(cell) for cell in ensemble.members["diagnostics"])
     values = {
-        "facts": found.facts,
-        "sizes": span([found.facts["semidiagonal"][end] for end in ("from", "to")]),
-        "slenderness": span([found.facts["tan_alpha"][end] for end in ("from", "to")]),
-        "count": found.members["member"].nunique(),
-        "methods": found.methods.to_dict("records"),
+        "facts": ensemble.facts,
+        "sizes": span([ensemble.facts["semidiagonal"][end] for end in ("from", "to")]),
+        "slenderness": span([ensemble.facts["tan_alpha"][end] for end in ("from", "to")]),
+        "count": ensemble.members["member"].nunique(),
+        "methods": ensemble.methods.to_dict("records"),
         "contrasts": rows,
         "notes": [lines_of("diagnostic.one_column")[0]] if one_column else [],
         "headline": [statement(each) for each in findings if each.key in _ANSWERS],
         # the pairs begin with the name of a method, which has no capital
         "pairs": [f"{sentence(each)}." for each in findings if each.key == "ensemble.pair"],
         "findings": [statement(each) for each in findings if each.key not in (*_ANSWERS, "ensemble.pair")],
-        "any_falls": bool(found.methods["overturned"].any()),
+        "any_falls": bool(ensemble.methods["overturned"].any()),
         "power": POWER,
-        "about": found.manifest,
+        "about": ensemble.manifest,
     }
-    return Page(name="ensemble", template="ensemble", values=values, pictures=pictures(found))
+    return Page(name="ensemble", template="ensemble", values=values, pictures=pictures(ensemble))

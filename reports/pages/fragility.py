@@ -27,33 +27,33 @@ _FREQUENCY = ("risk.frequency", "risk.none")
 _UNIT = 1e4  # frequencies in 1e-4 a year
 
 
-def page_of(found: Fragility) -> Page:
+def page_of(fragility: Fragility) -> Page:
     """Return the page of a fragility."""
-    drawn = pictures(found)
+    drawn = pictures(fragility)
     names = [picture.name for picture in drawn]
-    drawn += risk_pictures(found)
-    values = {**fragility_values(found), "about": found.manifest, "pictures": names}
+    drawn += risk_pictures(fragility)
+    values = {**fragility_values(fragility), "about": fragility.manifest, "pictures": names}
     return Page(name="fragility", template="fragility", values=values, pictures=drawn)
 
 
-def fragility_values(found: Fragility) -> dict[str, object]:
+def fragility_values(fragility: Fragility) -> dict[str, object]:
     """Return the values of the template of a fragility."""
     measure, cylinders, findings = (
-        MEASURES[str(found.facts["measure"])],
-        found.facts["cylinders"],
-        found.findings(),
+        MEASURES[str(fragility.facts["measure"])],
+        fragility.facts["cylinders"],
+        fragility.findings(),
     )
     whole = ALL if len(cylinders) > 1 else next(iter(cylinders))
-    fits = rows_of(found.fits)
+    fits = rows_of(fragility.fits)
     fallen = [
-        {**_with_known_spread(row, fits), "median": found.median_or_bound(row["cylinder"], row["median"])}
+        {**_with_known_spread(row, fits), "median": fragility.median_or_bound(row["cylinder"], row["median"])}
         for row in fits
         if row["limit"] == OVERTURNED
     ]
     contrasts = [
         {**_with_known_spread(row, fits), "ratio": known_ratio(row["ratio"])}
         for cylinder in (*cylinders, ALL)
-        for rows in main_contrasts(found).values()
+        for rows in main_contrasts(fragility).values()
         for row in rows
         if row["cylinder"] == cylinder
     ]
@@ -66,9 +66,9 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         if each.runs == whole:
             questions.setdefault(_QUESTIONS[str(each.values["reason"])], []).append(f"{sentence(each)}.")
     return {
-        "facts": found.facts,
+        "facts": fragility.facts,
         "modes": list(map(statement, findings.of("mode"))),
-        "risk": _risk_values(found),
+        "risk": _risk_values(fragility),
         "measure": measure,
         "bodies": list(map(sentence, said("body", "one_column"))),
         "scaling": " ".join(map(sentence, said("levels", "own_levels", "cloud"))),
@@ -80,16 +80,16 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "fallen": fallen,
         "remarks": list(map(statement, said("poor_fit", "failed", "no_curve"))),
         "few": "".join(sentence(each, short=True) for each in said("few")),
-        **_counts(found),
-        "states": _states(found),
+        **_counts(fragility),
+        "states": _states(fragility),
         "state_columns": [["method", "method", "words"]]
-        + [[limit, limit.replace("_", " "), ".3g"] for limit in found.facts["limits"]],
+        + [[limit, limit.replace("_", " "), ".3g"] for limit in fragility.facts["limits"]],
         "unit": measure.unit.replace("-", ""),
         "notes": list(map(statement, said("wall"))),
         "efficiency": [
-            {**row, "title": MEASURES[str(row["measure"])].title} for row in rows_of(found.efficiency)
+            {**row, "title": MEASURES[str(row["measure"])].title} for row in rows_of(fragility.efficiency)
         ],
-        "gaps": _gaps(found),
+        "gaps": _gaps(fragility),
     }
 
 
@@ -109,9 +109,9 @@ def _with_known_spread(row: Row, fits: Iterable[Row]) -> Row:
     }
 
 
-def _counts(found: Fragility) -> dict[str, object]:
+def _counts(fragility: Fragility) -> dict[str, object]:
     """One row for each cylinder, method and limit: motions that exceed it, by level where there are some."""
-    levels: list[float] = [*found.counts["intensity"].unique()] if found.facts["levels"] else []
+    levels: list[float] = [*fragility.counts["intensity"].unique()] if fragility.facts["levels"] else []
     rows = [
         {
             "cylinder": cylinder,
@@ -120,7 +120,7 @@ def _counts(found: Fragility) -> dict[str, object]:
             "all": _share(own["k"].sum(), own["n"].sum()),
             **{f"{row['intensity']:g}": _share(row["k"], row["n"]) for row in own.to_dict("records")},
         }
-        for (cylinder, method, limit), own in found.counts.groupby(
+        for (cylinder, method, limit), own in fragility.counts.groupby(
             ["cylinder", "method", "limit"], sort=False
         )
     ]
@@ -143,42 +143,42 @@ def _share(exceeded: float, runs: float) -> str:
     return f"{exceeded:g} of {runs:g}".replace(" ", "\u00a0")  # no-break spaces keep it in one line
 
 
-def _gaps(found: Fragility) -> list[Row]:
+def _gaps(fragility: Fragility) -> list[Row]:
     medians = ("median", "median_incremental")
     return [
         {
             **row,
-            **{name: found.median_or_bound(row["cylinder"], row[name]) for name in medians},
+            **{name: fragility.median_or_bound(row["cylinder"], row[name]) for name in medians},
             "bias": known_ratio(row["bias"]),
         }
-        for row in rows_of(found.gaps)
+        for row in rows_of(fragility.gaps)
     ]
 
 
-def _states(found: Fragility) -> list[Row]:
+def _states(fragility: Fragility) -> list[Row]:
     """One row for each cylinder and method: the median of each limit, or what bounds it."""
     rows: dict[tuple[str, str], Row] = {}
-    for row in found.fits.to_dict("records"):
+    for row in fragility.fits.to_dict("records"):
         key = str(row["cylinder"]), str(row["method"])
         made = rows.setdefault(key, {"cylinder": key[0], "method": key[1]})
-        made[str(row["limit"])] = found.median_or_bound(key[0], float(row["median"]))
+        made[str(row["limit"])] = fragility.median_or_bound(key[0], float(row["median"]))
     return list(rows.values())
 
 
-def _risk_values(found: Fragility) -> dict[str, object] | None:
+def _risk_values(fragility: Fragility) -> dict[str, object] | None:
     """Values of the part on the annual frequency of overturning; None without a hazard."""
-    if "risk" not in found.tables:
+    if "risk" not in fragility.tables:
         return None
-    rows = rows_of(found.tables["risk"])
+    rows = rows_of(fragility.tables["risk"])
     scaled = [name for name in rows[0] if name.startswith("annual_frequency")]
-    reference, said = str(rows[0]["method"]), found.findings().of("risk")
+    reference, said = str(rows[0]["method"]), fragility.findings().of("risk")
     return {
-        "hazard": {"limit": OVERTURNED, "target": TARGET, "source": ""} | found.facts["hazard"],
+        "hazard": {"limit": OVERTURNED, "target": TARGET, "source": ""} | fragility.facts["hazard"],
         "rows": [{**row, **{name: _UNIT * row[name] for name in scaled}} for row in rows],
         "main": [sentence(each) for each in said if each.key in _FREQUENCY],
         "reference": reference,
         "remarks": [
             f"{each.runs}: {sentence(each)}".removeprefix(": ") for each in said if each.key not in _FREQUENCY
         ],
-        "pictures": [picture.name for picture in risk_pictures(found)],
+        "pictures": [picture.name for picture in risk_pictures(fragility)],
     }

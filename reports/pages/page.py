@@ -335,5 +335,5 @@ def _environment() -> Environment:
 def _escape(value: object) -> object:
     """Return a text without what Markdown would take for markup; what is Markdown already stays."""
     if isinstance(value, str) and not isinstance(value, MarkdownText) and not hasattr(value, "__html__"):
-        return _MARKUP.sub(lambda found: f"\\{found[0]}", value)
+        return _MARKUP.sub(lambda match: f"\\{match[0]}", value)
     return value

@@ -16,25 +16,25 @@ _DOUBT = "run.not_reproducible"
 _DETAILS = ("quantity.closest", "quantity.computing_time")  # which a terminal leaves to the page
 
 
-def page_of(found: SingleRun) -> Page:
+def page_of(run: SingleRun) -> Page:
     """Return the page of a run."""
-    trace, findings = found.trace, found.findings()
+    trace, findings = run.trace, run.findings()
     said = " ".join(statement(each.finding()) for each in _limits(trace))
     sizes = findings.of("quantity")
     doubts = [each for each in findings if each.key == _DOUBT]
     answers = [each for each in findings if each not in (*sizes, *doubts)]
     values = {
-        "title": f"{trace.case.name}, {found.facts['run']}: {trace.outcome}",
-        "label": f"{found.facts['run'][0].upper()}{found.facts['run'][1:]}",
+        "title": f"{trace.case.name}, {run.facts['run']}: {trace.outcome}",
+        "label": f"{run.facts['run'][0].upper()}{run.facts['run'][1:]}",
         "statements": list(map(statement, answers)),
         "answers": [statement(each) for each in answers if each.key != "mode.rocks"],
         "said": said,
         "warnings": [*map(statement, doubts)],
-        "answer": found.facts.get("single_trace", {}).get("answer", ""),
+        "answer": run.facts.get("single_trace", {}).get("answer", ""),
         "rows": _rows(sizes),
         "rows_short": _rows([each for each in sizes if each.key not in _DETAILS]),
         "lines": case_lines(trace.case),
-        "about": found.manifest,
+        "about": run.manifest,
     }
     return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
 

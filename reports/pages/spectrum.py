@@ -14,19 +14,19 @@ from .wording import statement
 _ANSWERS = ("mode.", "spectrum.unsolved", "spectrum.overturned")
 
 
-def page_of(found: OverturningSpectrum) -> Page:
+def page_of(spectrum: OverturningSpectrum) -> Page:
     """Return the page of a spectrum."""
-    values = {**spectrum_values(found), "about": found.manifest}
-    return Page(name="spectrum", template="spectrum", values=values, pictures=pictures(found))
+    values = {**spectrum_values(spectrum), "about": spectrum.manifest}
+    return Page(name="spectrum", template="spectrum", values=values, pictures=pictures(spectrum))
 
 
-def spectrum_values(found: OverturningSpectrum) -> dict[str, object]:
+def spectrum_values(spectrum: OverturningSpectrum) -> dict[str, object]:
     """Return the values of the templates of a spectrum, for its own page and for that of the paper."""
-    contrast = found.tables["contrast"]
-    said = {each.key: statement(each) for each in found.findings()}
+    contrast = spectrum.tables["contrast"]
+    said = {each.key: statement(each) for each in spectrum.findings()}
     return {
-        "spectrum": found.maps,
-        "holds": support_named(found.maps.plan.support),
+        "spectrum": spectrum.maps,
+        "holds": support_named(spectrum.maps.plan.support),
         "cell_rows": contrast.assign(
             band=[f"{row.smallest:.3g} to {row.largest:.3g}" for row in contrast.itertuples()]
         )

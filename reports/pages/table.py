@@ -41,17 +41,17 @@ def number(value: object, form: str = ".3g") -> str:
         return str(value)
     if isinstance(value, bool) or type(value).__name__ == "bool":  # numpy's too
         return "yes" if value else "no"
-    found = float(value)  # type: ignore[arg-type]
-    if math.isinf(found):
-        return "∞" if found > 0.0 else "-∞"
+    numeric = float(value)  # type: ignore[arg-type]
+    if math.isinf(numeric):
+        return "∞" if numeric > 0.0 else "-∞"
     bound, _, plain = form.rpartition(" ")
     if bound:
-        found, form = _round(found, plain, _BOUNDS[bound]), plain
+        numeric, form = _round(numeric, plain, _BOUNDS[bound]), plain
     if form in _FORMS:
-        return _FORMS[form](found)
+        return _FORMS[form](numeric)
     if form.endswith("d"):
-        return format(int(found), form)
-    return _short(format(found, form))
+        return format(int(numeric), form)
+    return _short(format(numeric, form))
 
 
 def scattered(scatter: float, most: int = 4) -> str:
@@ -231,8 +231,8 @@ class Table:
 
     def groups(self) -> list[tuple[str, list[list[str]]]]:
         """Return the cells of the rows, by group."""
-        found = groupby(self.rows, key=lambda row: str(row[self.group]) if self.group else "")
-        return [(name, [self.cells(row) for row in rows]) for name, rows in found]
+        grouped = groupby(self.rows, key=lambda row: str(row[self.group]) if self.group else "")
+        return [(name, [self.cells(row) for row in rows]) for name, rows in grouped]
 
     def cells(self, row: Row) -> list[str]:
         """Cells of one row: a number with an interval has as many digits as that leaves."""
@@ -294,12 +294,12 @@ class Table:
         return f'<div class="scroll" tabindex="0">{table}</div>'
 
     def _html_row(self, cells: Sequence[str]) -> str:
-        found = []
+        tags = []
         for place, (column, cell) in enumerate(zip(self.columns, cells, strict=True)):
             mark = ' class="tag"' if column.form == "tag" else _class(column)
             kind, scope = ("th", ' scope="row"') if place == 0 else ("td", "")
-            found.append(f"<{kind}{scope}{mark}>{html.escape(cell)}</{kind}>")
-        return f"<tr>{''.join(found)}</tr>"
+            tags.append(f"<{kind}{scope}{mark}>{html.escape(cell)}</{kind}>")
+        return f"<tr>{''.join(tags)}</tr>"
 
     def fitting_columns(self, width: int) -> Sequence[Column]:
         """Return the columns for which a terminal of this width has room.

@@ -18,21 +18,21 @@ def _words(name: str) -> str:
     return name.replace("_", " ")
 
 
-def page_of(found: Results) -> Page:
+def page_of(results: Results) -> Page:
     """Page of the results."""
-    drawn = pictures(found)
+    drawn = pictures(results)
     values = {
-        "title": (inspect.getdoc(type(found)) or found.kind).partition("\n")[0].rstrip("."),
-        "headline": found.headline(),
-        "findings": [statement(each) for each in found.findings()],
+        "title": (inspect.getdoc(type(results)) or results.kind).partition("\n")[0].rstrip("."),
+        "headline": results.headline(),
+        "findings": [statement(each) for each in results.findings()],
         "tables": {
             name: (
                 table.head(_MOST).to_dict("records"),
                 [[str(key), str(key).replace("_", " ")] for key in table],
             )
-            for name, table in found.tables.items()
+            for name, table in results.tables.items()
         },
         "pictures": [each.name for each in drawn],
-        "about": found.manifest,
+        "about": results.manifest,
     }
-    return Page(name=KINDS[found.kind].name, template="tables", values=values, pictures=drawn)
+    return Page(name=KINDS[results.kind].name, template="tables", values=values, pictures=drawn)

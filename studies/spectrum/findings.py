@@ -73,18 +73,18 @@ def _boundary(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterato
 def _search(spectrum: TiltMaps, lowest: pd.DataFrame) -> Iterator[Finding]:
     """Findings on how the boundary was searched, what may be missed, and what is left to chance."""
     space, sizes = lowest[lowest["series"] == SPATIAL], len(spectrum.semidiagonals)
-    found = space[np.isfinite(space["intensity"])]
+    overturned = space[np.isfinite(space["intensity"])]
     steps = {"intensity": spectrum.searched_from[SPATIAL], "intensity_step": spectrum.plan.search_step}
     yield Finding(key="spectrum.search", values=steps)
     if probes := spectrum.plan.probes:
         values: dict[str, Value] = {"count": probes, "share": gap_bound(probes)}
         values |= {"count_lowered": int((space["overturned_below"] > 0).sum()), "count_all": sizes}
         yield Finding(key="spectrum.probes", values=values)
-    if len(found):
+    if len(overturned):
         spacing = float(np.diff(spectrum.intensities).max(initial=0.0))
-        unseen = int((found["intensity"] < found["on_grid"].fillna(math.inf) - spacing).sum())
-        yield Finding(key="spectrum.unseen", values={"count": unseen, "count_all": len(found)})
-    chance = found.loc[~found["confirmed"].astype(bool), "semidiagonal"]
+        unseen = int((overturned["intensity"] < overturned["on_grid"].fillna(math.inf) - spacing).sum())
+        yield Finding(key="spectrum.unseen", values={"count": unseen, "count_all": len(overturned)})
+    chance = overturned.loc[~overturned["confirmed"].astype(bool), "semidiagonal"]
     if len(chance):
         ends = {"length": float(chance.min()), "length_end": float(chance.max())}
         bounds = {"bound": CHECK_RTOL, "bound_nudge": NUDGE}

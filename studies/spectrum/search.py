@@ -150,7 +150,7 @@ def run_searches(
             while True:
                 wanted = search.send(peak_tilts(i, wanted))
         except StopIteration as end:
-            found: T = end.value
-            return found
+            lowest: T = end.value
+            return lowest
 
     return list(in_threads(run, range(len(searches)), workers=workers))

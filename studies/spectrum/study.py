@@ -46,8 +46,8 @@ class OverturningSpectrum(Results, kind=KIND, findings_file="spectrum.json"):
     --------
     >>> import rockwobble as rw
     >>> coarse = {"semidiagonals": [1, 20], "intensities": [0.9, 4], "search_step": 0.2, "probes": 9}
-    >>> found = rw.spectrum(0.1, rw.el_centro_1940(), **coarse)
-    >>> found.headline()["share that overturns in 3D"]
+    >>> spectrum = rw.spectrum(0.1, rw.el_centro_1940(), **coarse)
+    >>> spectrum.headline()["share that overturns in 3D"]
     0.25
     """
 

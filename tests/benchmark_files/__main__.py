@@ -27,12 +27,12 @@ def cases(names: list[str], only: list[str]) -> None:
     for definition in definitions():
         if (names or only) and definition.name not in names + only:
             continue
-        found = reference(definition)
-        found = found._replace(quantities=with_witnesses(definition, found.quantities))
-        write(definition, found, PUBLISHED / "cases" / definition.name)
-        worst = max((one["bound"] for one in found.quantities), default=0.0)
-        number = len(found.quantities)
-        print(f"{definition.name}: {number} quantities, largest bound {worst:.0e}; traces {found.bounds}")
+        computed = reference(definition)
+        computed = computed._replace(quantities=with_witnesses(definition, computed.quantities))
+        write(definition, computed, PUBLISHED / "cases" / definition.name)
+        worst = max((one["bound"] for one in computed.quantities), default=0.0)
+        number = len(computed.quantities)
+        print(f"{definition.name}: {number} quantities, largest bound {worst:.0e}; traces {computed.bounds}")
 
 
 def mistakes(names: list[str], only: list[str]) -> None:

@@ -108,8 +108,8 @@ def judged(definition: Definition, mistake: str) -> tuple[str, float] | None:
             motions[name] = check().read_motion(case.runs[name], slid(run, spacing))
             continue
         end = spacing * round(run.duration / spacing)
-        found = sampled(run, spacing, end, rtol=RTOL, gyroscopic=gyroscopic)
-        values = {"time": found.time, "tilt": found.tilt, "azimuth": found.azimuth}
+        samples = sampled(run, spacing, end, rtol=RTOL, gyroscopic=gyroscopic)
+        values = {"time": samples.time, "tilt": samples.tilt, "azimuth": samples.azimuth}
         motions[name] = check().read_motion(case.runs[name], values)
     judgement = check().Judgement(case.judge(motions), (), ())
     return judgement.verdict, case.score(motions)
@@ -122,9 +122,9 @@ def table() -> str:
     for definition in definitions():
         cells = [definition.name]
         for mistake in MISTAKES:
-            found = judged(definition, mistake)
+            grade = judged(definition, mistake)
             cells.append(
-                "" if found is None else f"{found[0]}, {found[1]:.2g}" if found[1] < math.inf else found[0]
+                "" if grade is None else f"{grade[0]}, {grade[1]:.2g}" if grade[1] < math.inf else grade[0]
             )
         lines.append(" | ".join(cells))
     return "\n".join(f"| {line} |" for line in lines)

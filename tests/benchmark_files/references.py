@@ -237,10 +237,10 @@ def _columns(
 
 def _peak(run: BenchmarkRun) -> float:
     """The largest tilt by the second formulation [rad], over still ground after the record, too."""
-    found = sampled(run, 0.005, run.duration + 10.0, rtol=1e-12)
-    tilt = CubicHermiteSpline(found.time, found.tilt, found.tilt_rate)
+    samples = sampled(run, 0.005, run.duration + 10.0, rtol=1e-12)
+    tilt = CubicHermiteSpline(samples.time, samples.tilt, samples.tilt_rate)
     turns = tilt.derivative().roots(extrapolate=False)
-    return min(0.5 * math.pi, float(tilt(turns[np.isfinite(turns)]).max(initial=found.tilt.max())))
+    return min(0.5 * math.pi, float(tilt(turns[np.isfinite(turns)]).max(initial=samples.tilt.max())))
 
 
 def _peaks(definition: Definition) -> Reference:

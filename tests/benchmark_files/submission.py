@@ -21,7 +21,7 @@ Table = dict[str, Array]
 def cases_of(folder: Path) -> dict[str, tuple[Case, str]]:
     """Return case and support of each run of a folder; "flat" where the motion is the same on both."""
     given = json.loads((folder / "case.json").read_text())
-    found = {}
+    cases = {}
     for run in given["runs"]:
         start = run["start"]
         body = Cylinder.from_dimensions(
@@ -45,8 +45,8 @@ def cases_of(folder: Path) -> dict[str, tuple[Case, str]]:
             tendon=Tendon(**held["dimensionless"]) if held else None,
             name=run["name"],
         )
-        found[run["name"]] = case, "recess" if run["support"] == "recess" else "flat"
-    return found
+        cases[run["name"]] = case, "recess" if run["support"] == "recess" else "flat"
+    return cases
 
 
 def motion_of(given: Mapping[str, Any], folder: Path) -> GroundMotion | None:

@@ -37,7 +37,7 @@ Form = Callable[[Trace], Table]
 @cache
 def traces(name: str, *, larger: float = 0.0) -> dict[str, Trace]:
     """Every run of a case by the reduced model, perhaps of a body larger by a share."""
-    found = {}
+    sampled = {}
     for run, (case, support) in cases_of(PUBLISHED / "cases" / name).items():
         body, size = case.cylinder, 1.0 + larger
         scaled = {"semidiagonal": size * body.semidiagonal, "height": size * body.height}
@@ -45,25 +45,25 @@ def traces(name: str, *, larger: float = 0.0) -> dict[str, Trace]:
         given = dataclasses.replace(case, cylinder=dataclasses.replace(body, **scaled))
         step = min(spacing(case), 0.01)
         plane: dict[str, Any] = {"plane": 0.0, "restitution": "momentum"} if name == IMPACT else {}
-        found[run] = reduced.simulate(given, support=support, rtol=1e-9, sample_step=step, **plane)
-    return found
+        sampled[run] = reduced.simulate(given, support=support, rtol=1e-9, sample_step=step, **plane)
+    return sampled
 
 
 def tables(name: str, form: Form, **more: float) -> dict[str, Table]:
     return {run: form(trace) for run, trace in traces(name, **more).items()}
 
 
-def sparse(found: dict[str, Table]) -> dict[str, Table]:
+def sparse(runs: dict[str, Table]) -> dict[str, Table]:
     """Each fourth of two thousand samples."""
-    return {run: {key: values[::4] for key, values in table.items()} for run, table in found.items()}
+    return {run: {key: values[::4] for key, values in table.items()} for run, table in runs.items()}
 
 
-def with_sliding(found: dict[str, Table]) -> dict[str, Table]:
+def with_sliding(runs: dict[str, Table]) -> dict[str, Table]:
     """The reduced model does not slide: as the closed form says, x'' = -(a_x - mu (g + a_z))."""
     for run, (case, _) in cases_of(PUBLISHED / "cases" / SLIDING).items():
         if not run.startswith("slides"):
             continue
-        table, motion = found[run], case.motion
+        table, motion = runs[run], case.motion
         assert motion is not None
         for key in ("tilt", "azimuth", "qx", "qy", "qz"):
             if key in table:
@@ -73,14 +73,14 @@ def with_sliding(found: dict[str, Table]) -> dict[str, Table]:
         past = np.maximum(table["time"] - case.friction * case.gravity / rate, 0.0)
         table |= {"x": -rate * past**3 / 6.0, "y": 0.0 * past}
         table["z"] = np.full_like(past, case.cylinder.mass_centre_height)
-    return found
+    return runs
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_a_converged_solution_is_exact(judge: Judge, name: str) -> None:
-    found = tables(name, tilt_and_azimuth)
-    judged = judge(name, with_sliding(found) if name == SLIDING else found)
+    runs = tables(name, tilt_and_azimuth)
+    judged = judge(name, with_sliding(runs) if name == SLIDING else runs)
     assert judged.verdict == "exact", judged.text
     assert all(one["level"] == "exact" for one in judged.result["criteria"])
     assert not judged.mistakes
@@ -100,11 +100,11 @@ def test_every_format_is_read(judge: Judge, name: str, form: Form) -> None:
 
 def test_needed_columns_are_required_and_unread_ones_named(judge: Judge) -> None:
     kept = {"time": "time", "tilt": "tilt", "azimuth": "azimut"}
-    found = {
+    runs = {
         run: {title: table[key] for key, title in kept.items()}
         for run, table in tables("turn-recess", tilt_and_azimuth).items()
     }
-    judged = judge("turn-recess", found)
+    judged = judge("turn-recess", runs)
     assert (judged.verdict, judged.result["grade"]) == ("rejected", "not tested")
     assert "turn_1" in judged.result["reason"]
     assert "azimut" in judged.result["reason"]
@@ -132,15 +132,15 @@ def test_the_published_table_says_what_each_planted_mistake_does() -> None:
     assert all(any(cell.startswith("fail") for cell in column) for column in seen)
     (definition,) = (one for one in definitions() if one.name == "rolling-disc")
     for mistake in ("axial inertia 10 % too large", WITHOUT_GYROSCOPIC_TERM):
-        found = planted(definition, mistake)
-        assert found is not None
-        assert rows["rolling-disc"][rows["case"].index(mistake)] == f"fail, {found[1]:.2g}"
+        judgement = planted(definition, mistake)
+        assert judgement is not None
+        assert rows["rolling-disc"][rows["case"].index(mistake)] == f"fail, {judgement[1]:.2g}"
 
 
 @pytest.mark.slow
 def test_another_tendon_fails_and_no_mistake_explains_it(judge: Judge) -> None:
     for prestress, stiffness in ((1.02, 1.0), (1.0, 1.02), (0.0, 0.0)):
-        found = {}
+        judgements = {}
         for run, (case, support) in cases_of(PUBLISHED / "cases" / "tendon").items():
             assert case.tendon is not None
             held = Tendon(
@@ -148,15 +148,15 @@ def test_another_tendon_fails_and_no_mistake_explains_it(judge: Judge) -> None:
             )
             other = dataclasses.replace(case, tendon=held)
             trace = reduced.simulate(other, support=support, rtol=1e-9, sample_step=2e-3)
-            found[run] = tilt_and_azimuth(trace)
-        judged = judge("tendon", found)
+            judgements[run] = tilt_and_azimuth(trace)
+        judged = judge("tendon", judgements)
         assert (judged.verdict, judged.mistakes) == ("fail", {}), (prestress, stiffness)
 
 
 @pytest.mark.slow
 def test_what_is_no_mistake_of_a_file_fails_without_explanation(judge: Judge) -> None:
-    found = tables("records-distribution", tilt_and_azimuth)
-    weak = {run: {"time": table["time"], "tilt": table["tilt"] / 3.0} for run, table in found.items()}
+    runs = tables("records-distribution", tilt_and_azimuth)
+    weak = {run: {"time": table["time"], "tilt": table["tilt"] / 3.0} for run, table in runs.items()}
     larger = tables("el-centro", tilt_and_azimuth, larger=0.01)
     for name, given in (("records-distribution", weak), ("el-centro", larger)):
         judged = judge(name, given)
@@ -208,17 +208,17 @@ def test_a_mistake_in_units_axes_or_clock_is_named(judge: Judge, mistake: str) -
 
 def test_planar_runs_leave_mistakes_for_other_runs_to_find(judge: Judge) -> None:
     # an uplift in one direction is a turn as well as a mirror image
-    found = sparse(tables("uplift-directions", tilt_and_azimuth))
-    mirrored = {run: table | {"azimuth": -table["azimuth"]} for run, table in found.items()}
+    runs = sparse(tables("uplift-directions", tilt_and_azimuth))
+    mirrored = {run: table | {"azimuth": -table["azimuth"]} for run, table in runs.items()}
     assert list(judge("uplift-directions", mirrored).mistakes) == ["y_reversed"]
 
 
 def test_units_in_the_header_and_what_comes_after_the_window_are_no_mistake(judge: Judge) -> None:
-    found = tables("turn-flat", tilt_and_azimuth)
-    for table in found.values():
+    runs = tables("turn-flat", tilt_and_azimuth)
+    for table in runs.values():
         table["azimuth"] = np.where(table["time"] > 3.05, 0.0, table["azimuth"])
         table |= {"time": 1e3 * table["time"], "tilt": np.degrees(table["tilt"])}
-    judged = judge("turn-flat", found, {"time": "time [ms]", "tilt": "Tilt (deg)"})
+    judged = judge("turn-flat", runs, {"time": "time [ms]", "tilt": "Tilt (deg)"})
     assert judged.verdict == "exact", judged.text
 
 

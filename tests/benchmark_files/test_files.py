@@ -61,11 +61,11 @@ def test_the_fifteen_cases_are_those_defined_and_follow_their_schemas() -> None:
 
 def test_results_follow_their_schema() -> None:
     for path in (PUBLISHED / "results").glob("*/*.json"):
-        found = json.loads(path.read_text())
+        stored = json.loads(path.read_text())
         if path.name == "about.json":
-            assert {"code", "version", "settings", "seconds_a_step"} <= set(found)
+            assert {"code", "version", "settings", "seconds_a_step"} <= set(stored)
         else:
-            follows("result", found)
+            follows("result", stored)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -124,13 +124,13 @@ def test_engines_of_hard_contact_tend_to_the_same_numbers(case: str, number: int
 def test_the_files_are_what_is_computed_here(case: str) -> None:
     definition = next(one for one in definitions() if one.name == case)
     assert json.loads(json.dumps(case_file(definition))) == read(case, "case")
-    found = reference(definition)
+    computed = reference(definition)
     stored = {(one["name"], one["run"]): one for one in read(case, "reference")["quantities"]}
-    for one in found.quantities:
+    for one in computed.quantities:
         old = stored[one["name"], one["run"]]
         assert all(abs(value - old["value"]) <= old["bound"] for value in one["certified"].values())
     for name, column in table(case).items():
-        np.testing.assert_allclose(column, found.columns[name], rtol=0, atol=1e-8)
+        np.testing.assert_allclose(column, computed.columns[name], rtol=0, atol=1e-8)
 
 
 def test_the_turns_are_those_of_the_table_made_outside_the_project() -> None:

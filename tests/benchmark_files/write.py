@@ -20,7 +20,7 @@ PUBLISHED = Path(__file__).resolve().parents[2] / "reports" / "published" / "ben
 _MANY = 100  # samples of a ground motion that has a file of its own
 
 
-def write(definition: Definition, found: Reference, folder: Path) -> None:
+def write(definition: Definition, computed: Reference, folder: Path) -> None:
     """Write the four files of a case, and that of its ground motions."""
     folder.mkdir(parents=True, exist_ok=True)
     _write_json(folder / "case.json", case_file(definition))
@@ -41,12 +41,12 @@ def write(definition: Definition, found: Reference, folder: Path) -> None:
                 "unit": "m" if name in "xy" else "rad",
                 "certified_by": [MODEL, INTEGRATED] if name in "xy" else [FIRST, SECOND],
             }
-            for name, bound in found.bounds.items()
+            for name, bound in computed.bounds.items()
         },
-        "quantities": found.quantities,
+        "quantities": computed.quantities,
     }
     _write_json(folder / "reference.json", reference)
-    _write_table(folder / "reference.csv", found.columns, digits=12)
+    _write_table(folder / "reference.csv", computed.columns, digits=12)
     columns: dict[str, NDArray[np.float64]] = {}
     for run in definition.runs:
         if run.motion is not None and len(run.motion.acceleration) >= _MANY:
@@ -81,7 +81,7 @@ def _run(definition: Definition, run: BenchmarkRun) -> dict[str, Any]:
     start = run.initial
     tilt, rate = (start.tilt, start.tilt_rate) if start else (0.0, 0.0)
     azimuth, spin = (start.rolling_angle, start.rolling_rate) if start else (0.0, 0.0)
-    found: dict[str, Any] = {
+    entry: dict[str, Any] = {
         "name": run.name,
         "support": run.support,
         "friction": run.friction,
@@ -108,16 +108,16 @@ def _run(definition: Definition, run: BenchmarkRun) -> dict[str, Any]:
     }
     if run.tendon is not None:
         prestress, stiffness = run.tendon.prestress, run.tendon.stiffness
-        found["tendon"] = {
+        entry["tendon"] = {
             "prestress": prestress * G,
             "stiffness": stiffness * G / body.b,
             "dimensionless": {"prestress": prestress, "stiffness": stiffness},
         }
     if run.turned:
-        found["turned"] = run.turned
+        entry["turned"] = run.turned
     if run.time_unit != 1.0:
-        found["time_unit"] = run.time_unit
-    return found
+        entry["time_unit"] = run.time_unit
+    return entry
 
 
 def pose(run: BenchmarkRun) -> dict[str, list[float]]:

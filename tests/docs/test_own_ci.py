@@ -89,6 +89,6 @@ def test_check_and_suite_run_and_write_their_reports(repository: Path) -> None:
     assert (repository / "summary.md").stat().st_size > 0
     done = run(RUN["suites, and tests of your own"], repository)
     assert done.returncode == 0, done.stdout + done.stderr
-    found = cases_in(repository / "pytest.xml")
-    assert [each.get("name") for each in found if each.find("skipped") is None] != []
-    assert len(found) == 2  # one for each scale of the record
+    cases = cases_in(repository / "pytest.xml")
+    assert [each.get("name") for each in cases if each.find("skipped") is None] != []
+    assert len(cases) == 2  # one for each scale of the record

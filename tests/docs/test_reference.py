@@ -44,10 +44,10 @@ def documented() -> set[str]:
     for page in API.glob("*.rst"):
         module = ""
         for line in page.read_text(encoding="utf-8").splitlines():
-            if found := re.match(r"\.\. currentmodule:: (\S+)", line):
-                module = found.group(1)
-            elif found := re.match(r"\.\. auto(?:class|function|exception|data):: (\S+)", line):
-                name = found.group(1)
+            if match := re.match(r"\.\. currentmodule:: (\S+)", line):
+                module = match.group(1)
+            elif match := re.match(r"\.\. auto(?:class|function|exception|data):: (\S+)", line):
+                name = match.group(1)
                 names.add(name if name.startswith("rockwobble.") else f"{module}.{name}")
             elif line == ".. rockwobble-studies::":
                 names |= {name for both in STUDIES.values() for name in both}

@@ -142,9 +142,9 @@ def test_close_passes_amplify_as_stated() -> None:
 
 @pytest.mark.slow
 def test_close_passes_amplify_in_an_engine_as_in_the_model() -> None:
-    found = factors(1e-10, end=20.0, engine="mujoco", time_step=2e-4)
-    assert found[0] == pytest.approx(63.1, rel=0.1)  # tolerances of the page
-    assert 1e2 < found[1] < 1e5
+    growth = factors(1e-10, end=20.0, engine="mujoco", time_step=2e-4)
+    assert growth[0] == pytest.approx(63.1, rel=0.1)  # tolerances of the page
+    assert 1e2 < growth[1] < 1e5
 
 
 def test_the_file_of_close_passes_has_their_release() -> None:

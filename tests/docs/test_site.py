@@ -68,8 +68,8 @@ class Page(HTMLParser):
 
 
 def names() -> list[str]:
-    found = [path.relative_to(BUILT).as_posix() for path in sorted(BUILT.rglob("*.html"))]
-    return [name for name in found if not name.startswith("_")]  # what the theme brings is no page
+    pages = [path.relative_to(BUILT).as_posix() for path in sorted(BUILT.rglob("*.html"))]
+    return [name for name in pages if not name.startswith("_")]  # what the theme brings is no page
 
 
 @pytest.fixture(scope="module")
@@ -142,8 +142,8 @@ def test_every_page_is_drawn_quiet_and_no_wider_than_the_window(tmp_path: Path) 
             base = f'<head><base href="{(BUILT / name).resolve().as_uri()}">'
             sources.append((BUILT / name).read_text(encoding="utf-8").replace("<head>", base, 1))
         home = f'window.home = "{BUILT.resolve().as_uri()}/";'
-        found = complaints_of_all(sources, tmp_path, figures=0, further=home)
-        wrong += [f"{together[place]}: {line}" for place, lines in found.items() for line in lines]
+        complaints = complaints_of_all(sources, tmp_path, figures=0, further=home)
+        wrong += [f"{together[place]}: {line}" for place, lines in complaints.items() for line in lines]
     wrong = [line for line in wrong if THEME not in line]
     assert wrong == []
 

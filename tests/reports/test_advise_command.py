@@ -79,11 +79,11 @@ def test_every_kind_of_case_gets_its_page(names, more, expected, records, tmp_pa
     assert call(*options_of(records, **names), *more, *FAST, "--out", str(tmp_path)) == 0
     printed = capsys.readouterr().out
     assert printed.count("\n") <= SCREEN
-    found, again = Advice.load(tmp_path), stored_page("advice", tmp_path)
+    loaded, again = Advice.load(tmp_path), stored_page("advice", tmp_path)
     text = again.markdown()
-    grades = found.grades
+    grades = loaded.grades
     assert {topic: grades[topic] for topic in expected} == expected
-    assert found.moves == bool(grades) == bool(expected)
+    assert loaded.moves == bool(grades) == bool(expected)
     assert text.count("\n## ") == 1  # the details
     for cells in (text, printed):
         assert not {"nan", "inf", "None"} & set(cells.replace("|", " ").split())
@@ -91,7 +91,7 @@ def test_every_kind_of_case_gets_its_page(names, more, expected, records, tmp_pa
     assert len(html) < PAGE_LIMIT
     assert html.count('<details class="fold">') == html.count("</details>") == 1
     # a document is drawn by a report alone
-    tables = DATA | ({"slides.parquet"} if found.slides else set())
+    tables = DATA | ({"slides.parquet"} if loaded.slides else set())
     written = {path.name for path in tmp_path.iterdir()}
     assert written == tables | {"advice.html", "advice.json", "manifest.json"}
     if more == ["--scale", "2"]:  # twice: with a vertical component, and in one plane
@@ -99,39 +99,39 @@ def test_every_kind_of_case_gets_its_page(names, more, expected, records, tmp_pa
 
 
 @pytest.fixture(scope="module")
-def found(six_records: None) -> Advice:
+def advice(six_records: None) -> Advice:
     """Advice on a strong record; with a manifest, as its page needs one."""
     motion = el_centro_1940().acceleration[:800]
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), type(el_centro_1940())(motion, 0.01, "short"))
     return advise(case, copies=20, friction_given=False).made_by()
 
 
-def changed(found: Advice, **facts: Any) -> Advice:
-    return dataclasses.replace(found, facts={**found.facts, **facts})
+def changed(advice: Advice, **facts: Any) -> Advice:
+    return dataclasses.replace(advice, facts={**advice.facts, **facts})
 
 
-def with_table(found: Advice, name: str, **columns: Any) -> Advice:
-    return dataclasses.replace(found, tables={**found.tables, name: found.tables[name].assign(**columns)})
+def with_table(advice: Advice, name: str, **columns: Any) -> Advice:
+    return dataclasses.replace(advice, tables={**advice.tables, name: advice.tables[name].assign(**columns)})
 
 
-def printed(found: Advice, *, details: bool = False) -> str:
+def printed(advice: Advice, *, details: bool = False) -> str:
     console = Console(width=100, file=io.StringIO(), record=True)
-    page_of(found).show(console, details=details)
+    page_of(advice).show(console, details=details)
     return console.export_text()
 
 
-def test_details_are_printed_where_they_are_asked_for(found):
-    assert ["Assumptions" in printed(found, details=details) for details in (False, True)] == [False, True]
+def test_details_are_printed_where_they_are_asked_for(advice):
+    assert ["Assumptions" in printed(advice, details=details) for details in (False, True)] == [False, True]
 
 
-def test_the_numbers_are_those_of_the_groups(found):
-    given, *groups = page_of(found).values["numbers"]
-    alpha = np.degrees(found.cylinder.alpha)
+def test_the_numbers_are_those_of_the_groups(advice):
+    given, *groups = page_of(advice).values["numbers"]
+    alpha = np.degrees(advice.cylinder.alpha)
     # its digits follow the scatter of its copies
-    assert float(given["tilt"]) == pytest.approx(alpha * found.peak, rel=0.05)
-    assert float(given["top"]) == pytest.approx(found.top(found.peak), rel=0.05)
-    assert len(groups) == len(found.groups)
-    for row, group in zip(groups, found.groups.to_dict("records"), strict=True):
+    assert float(given["tilt"]) == pytest.approx(alpha * advice.peak, rel=0.05)
+    assert float(given["top"]) == pytest.approx(advice.top(advice.peak), rel=0.05)
+    assert len(groups) == len(advice.groups)
+    for row, group in zip(groups, advice.groups.to_dict("records"), strict=True):
         if np.isfinite(group["peak_tilt_95"]):
             assert float(row["tilt"]) == pytest.approx(alpha * group["peak_tilt_95"], rel=PRINTED)
         # one statement: how many overturn, and which order statistic the tilt is
@@ -140,36 +140,36 @@ def test_the_numbers_are_those_of_the_groups(found):
             assert np.isinf(group["peak_tilt_95"])
             continue
         rank, count = map(int, row["covered"].split(" of "))
-        peaks = found.members[found.members["group"] == group["group"]]["peak_tilt"]
+        peaks = advice.members[advice.members["group"] == group["group"]]["peak_tilt"]
         assert (peaks <= group["peak_tilt_95"] * (1.0 + 1e-12)).sum() >= rank >= 0.95 * count
-    _, *rows = page_of(with_table(found, "groups", peak_tilt_95=np.inf)).values["numbers"]
+    _, *rows = page_of(with_table(advice, "groups", peak_tilt_95=np.inf)).values["numbers"]
     # a count beside it would read as the count of those that overturn
     assert {(row["covered"], row["tilt"], row["top"]) for row in rows} == {("", "no limit", "no limit")}
 
 
-def finding_of(found: Advice, group: str) -> tuple[str, Mapping[str, Any]]:
+def finding_of(advice: Advice, group: str) -> tuple[str, Mapping[str, Any]]:
     """Key and values of the first finding of a group."""
-    finding = found.findings().of(group)[0]
+    finding = advice.findings().of(group)[0]
     return finding.key, finding.values
 
 
-def test_a_grade_gives_the_numbers_it_rests_on(found):
+def test_a_grade_gives_the_numbers_it_rests_on(advice):
     """Those of tables and facts, under the key of its reason."""
-    needed = found.demands.set_index("demand")["value"]["friction"]
-    assert finding_of(found, "friction") == ("friction.not_given", {"demand": needed})
-    low, high = found.range_as_strong
-    key, values = finding_of(found, "intensity")
-    assert (key, values["count"]) == ("intensity.ratio", len(found.as_strong))
-    assert values["ratio_least"] == pytest.approx(low / found.peak)
-    assert values["ratio_largest"] == pytest.approx(high / found.peak)
-    slides = changed(found, friction=0.1)
+    needed = advice.demands.set_index("demand")["value"]["friction"]
+    assert finding_of(advice, "friction") == ("friction.not_given", {"demand": needed})
+    low, high = advice.range_as_strong
+    key, values = finding_of(advice, "intensity")
+    assert (key, values["count"]) == ("intensity.ratio", len(advice.as_strong))
+    assert values["ratio_least"] == pytest.approx(low / advice.peak)
+    assert values["ratio_largest"] == pytest.approx(high / advice.peak)
+    slides = changed(advice, friction=0.1)
     assert finding_of(slides, "friction")[0] == "friction.below_border"
     assert finding_of(slides, "friction")[1] == {"given": 0.1, "demand": needed, "bound": pytest.approx(0.2)}
-    slips = with_table(changed(found, friction=0.3), "groups", slip_95=0.02)
+    slips = with_table(changed(advice, friction=0.3), "groups", slip_95=0.02)
     assert finding_of(slips, "friction")[0] == "friction.too_little"
     assert finding_of(slips, "friction")[1] == {"given": 0.3, "demand": needed, "share": 0.02}
-    for each in found.findings().of("overturning"):
-        assert each.level == found.grades["overturning"]
+    for each in advice.findings().of("overturning"):
+        assert each.level == advice.grades["overturning"]
 
 
 ENGINE = {
@@ -193,56 +193,56 @@ DIVERGENCES = {
 
 
 @pytest.mark.slow
-def test_every_code_has_words(found):
+def test_every_code_has_words(advice):
     assert {*DIVERGENCES} >= {"in time", "later", "much later", "earlier", "never, as predicted"}
     engines = [ENGINE | {"divergence": each} for each in (*DIVERGENCES, *UNTESTED)]
     engines += [ENGINE | {"outcome": "overturned"}, ENGINE | {"moves": False}]
     engines += [ENGINE | {"outcome": "failed", "diagnostics": "energy_gain", "divergence": ""}]
     keys = set()
     for engine in engines:
-        verified = changed(found, verification=engine)
+        verified = changed(advice, verification=engine)
         keys.add(finding_of(verified, "engine")[0])
         words = page_of(verified).markdown()
         assert "divergence_" not in words
         assert "mujoco recess 4.0.0" in words
     assert keys >= {f"engine.{name}" for name in ("earlier", "rests", "overturns", "little", "failed")}
     assert keys & {"engine.agrees", "engine.as_predicted"}
-    failed = {**found.facts["response"], "outcome": "failed", "diagnostics": ["step_budget"]}
-    again = changed(found, response=failed)
+    failed = {**advice.facts["response"], "outcome": "failed", "diagnostics": ["step_budget"]}
+    again = changed(advice, response=failed)
     assert again.grades == {"trace": "not satisfied"}
     assert (finding_of(again, "verdict")[0], len(page_of(again).markdown()) > 0) == ("verdict.failed", True)
     trust = {"kind": "statistics", "until": 3.0, "because": "methods"}
     for verification, reason in ((None, "methods_predicted"), (ENGINE, "methods_diverge")):
-        findings = changed(found, trust=trust, verification=verification).findings()
+        findings = changed(advice, trust=trust, verification=verification).findings()
         trusted = next(each for each in findings if each.key == "evidence.trusted")
         assert (trusted.values["until"], trusted.values["reason"]) == (3.0, reason)
     for kind, because in (("trace", ""), ("peak", "data"), ("statistics", "methods")):
-        assert page_of(changed(found, trust={"kind": kind, "until": 3.0, "because": because})).markdown()
+        assert page_of(changed(advice, trust={"kind": kind, "until": 3.0, "because": because})).markdown()
     assert get_args(get_type_hints(Trust)["because"]) == ("", "methods", "data")
     for reason in ("", "pass", "growth", "model form"):
         prediction = dataclasses.asdict(Prediction(length=5.0, reason=reason))
-        assert page_of(changed(found, prediction=prediction)).markdown()
+        assert page_of(changed(advice, prediction=prediction)).markdown()
 
 
-def with_columns(found: Advice, columns: int) -> Advice:
-    return changed(found, cylinder=found.facts["cylinder"] | {"columns": columns, "slab_mass_ratio": 0.5})
+def with_columns(advice: Advice, columns: int) -> Advice:
+    return changed(advice, cylinder=advice.facts["cylinder"] | {"columns": columns, "slab_mass_ratio": 0.5})
 
 
-def test_a_frame_states_its_columns_and_their_limit(found):
+def test_a_frame_states_its_columns_and_their_limit(advice):
     for columns in (1, 3, 4):
-        findings = with_columns(found, columns).findings()
+        findings = with_columns(advice, columns).findings()
         assert next(each for each in findings if each.key == "case.frame").values["count"] == columns
         assert [each.key for each in findings.of("caution")] == ["caution.uneven_load"] * (columns > 3)
-    mass = changed(with_columns(found, 4), mass=45.0)
+    mass = changed(with_columns(advice, 4), mass=45.0)
     assert "| one column |" in page_of(mass).markdown()
     assert finding_of(mass, "weight") == ("weight.column", {"mass": 67.5, "mass_column": 45.0})
 
 
-def test_chatter_of_a_closed_base_is_no_change_of_the_response(found):
+def test_chatter_of_a_closed_base_is_no_change_of_the_response(advice):
     """Of a tilt of 1e-6 alpha and one of 5e-6 alpha neither opens the base: it is not five times as much."""
-    tilts = np.geomspace(1e-6, 5e-6, len(found.as_strong))
-    response = {**found.facts["response"], "peak_tilt": 1e-5}
-    still = with_table(changed(found, response=response), "as_strong", peak_tilt=tilts)
+    tilts = np.geomspace(1e-6, 5e-6, len(advice.as_strong))
+    response = {**advice.facts["response"], "peak_tilt": 1e-5}
+    still = with_table(changed(advice, response=response), "as_strong", peak_tilt=tilts)
     assert still.grades["intensity"] == "satisfied"
     assert finding_of(still, "intensity")[0] == "intensity.hardly"
     trust = {"kind": "statistics", "until": 3.0, "because": "methods"}
@@ -257,10 +257,10 @@ def test_forces_of_a_body_at_rest_have_units_where_its_mass_is_given():
     assert (demanded["force"]["mass"], demanded["force"]["peak"]) == ("441 kN", "441 kN")
 
 
-def test_a_sliding_body_without_uplift_is_not_called_at_rest(found):
-    at_rest = {**found.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0}
-    motion = {**found.facts["motion"], "friction_at_rest": 0.0859}
-    still = changed(found, response=at_rest, motion=motion)
+def test_a_sliding_body_without_uplift_is_not_called_at_rest(advice):
+    at_rest = {**advice.facts["response"], "uplift_time": math.inf, "peak_tilt": 0.0}
+    motion = {**advice.facts["motion"], "friction_at_rest": 0.0859}
+    still = changed(advice, response=at_rest, motion=motion)
     for friction, slides in ((None, False), (0.0859, False), (0.05, True)):
         given = changed(still, friction=friction)
         assert given.grades == ({"friction": "not satisfied"} if slides else {})
@@ -272,11 +272,11 @@ def test_a_sliding_body_without_uplift_is_not_called_at_rest(found):
     assert finding_of(changed(still, friction=0.05), "verdict")[0] == "verdict.at_rest"
 
 
-def test_a_case_at_rest_begins_with_what_keeps_it_there(found):
-    at_rest = {**found.facts["response"], "uplift_time": math.inf, "diagnostics": []}
-    still = changed(found, response=at_rest, vertical={**found.facts["vertical"], "source": "other"})
-    weak = {**found.facts["motion"], "friction_at_rest": 0.0, "uplift_factor": 2.5}
-    shipped = {**found.facts["vertical"], "source": "shipped", "uplift_factor": 2.25}
+def test_a_case_at_rest_begins_with_what_keeps_it_there(advice):
+    at_rest = {**advice.facts["response"], "uplift_time": math.inf, "diagnostics": []}
+    still = changed(advice, response=at_rest, vertical={**advice.facts["vertical"], "source": "other"})
+    weak = {**advice.facts["motion"], "friction_at_rest": 0.0, "uplift_factor": 2.5}
+    shipped = {**advice.facts["vertical"], "source": "shipped", "uplift_factor": 2.25}
     for facts, expected in (
         ({"motion": None}, ("rest.nothing", None, None)),
         ({"motion": {**weak, "uplift_factor": math.inf}}, ("rest.no_scale", None, None)),
@@ -286,19 +286,19 @@ def test_a_case_at_rest_begins_with_what_keeps_it_there(found):
         key, values = finding_of(changed(still, **facts), "rest")
         vertical = values.get("factor_vertical", math.nan)
         assert (key, values.get("factor"), None if math.isnan(vertical) else vertical) == expected
-    moved = (found.members[found.members["group"] == "velocity"]["peak_tilt"] > 0.0).sum()
-    (fell,) = found.groups[found.groups["group"] == "velocity"]["overturned"]
+    moved = (advice.members[advice.members["group"] == "velocity"]["peak_tilt"] > 0.0).sum()
+    (fell,) = advice.groups[advice.groups["group"] == "velocity"]["overturned"]
     key, values = finding_of(still, "compared")
     assert (key, values["runs_velocity"], values["overturned_velocity"]) == ("compared.at_rest", moved, fell)
     failed = {**still.facts["response"], "diagnostics": ["step_budget"]}
     assert finding_of(changed(still, response=failed), "rest")[1] == {"names": ("step_budget",)}
-    assert not found.findings().of("rest")
+    assert not advice.findings().of("rest")
 
 
-def test_the_case_and_its_assumptions_are_those_asked(found):
-    asked = changed(with_columns(found, 3), rolling_resistance=0.012, friction=None, support="flat")
+def test_the_case_and_its_assumptions_are_those_asked(advice):
+    asked = changed(with_columns(advice, 3), rolling_resistance=0.012, friction=None, support="flat")
     for each, keys, length in (
-        (found, {"assumption.recess"}, math.nan),
+        (advice, {"assumption.recess"}, math.nan),
         (asked, {"assumption.slab", "assumption.flat"}, 0.012),
     ):
         findings = each.findings()
@@ -309,9 +309,9 @@ def test_the_case_and_its_assumptions_are_those_asked(found):
         assert support["length"] == pytest.approx(length, nan_ok=True)
 
 
-def test_the_overturning_range_is_stated_with_its_lowest_scale(found):
-    factors = found.as_strong["factor"].to_numpy()
-    fallen = with_table(found, "as_strong", peak_tilt=np.where(factors > 1.08, 0.5 * np.pi, 0.1))
+def test_the_overturning_range_is_stated_with_its_lowest_scale(advice):
+    factors = advice.as_strong["factor"].to_numpy()
+    fallen = with_table(advice, "as_strong", peak_tilt=np.where(factors > 1.08, 0.5 * np.pi, 0.1))
     key, values = finding_of(fallen, "intensity")
     share = np.log(factors[-1] / 1.08) / np.log(factors[-1] / factors[0])
     assert key == "intensity.overturns"
@@ -321,10 +321,10 @@ def test_the_overturning_range_is_stated_with_its_lowest_scale(found):
 
 @pytest.mark.parametrize(("balance", "drawn"), [(None, 1.2), (1.63, 1.5), (1.2, 1.2 * 1.2), (math.inf, 1.5)])
 def test_the_picture_cuts_no_tilt_that_a_tendon_brings_back(
-    found: Advice, balance: float | None, drawn: float
+    advice: Advice, balance: float | None, drawn: float
 ) -> None:
     tendon = None if balance is None else {"balance_tilt": balance}
-    tied = changed(with_table(found, "scales", peak_tilt=1.5 * found.cylinder.alpha), tendon=tendon)
+    tied = changed(with_table(advice, "scales", peak_tilt=1.5 * advice.cylinder.alpha), tendon=tendon)
     (picture,) = pictures(tied)
     peaks, details = parts_of(picture)  # beside the grades, and in the details of a page
     assert [*peaks.panels[0].layers, *details.panels] == [*picture.panels[0].layers, *picture.panels[1:]]

@@ -21,13 +21,13 @@ pytestmark = [pytest.mark.slow, pytest.mark.checkout]
 
 # of a player: moved, it must say where it is
 PLAYER = """
-window.lookFurther = (found) => {
+window.lookFurther = (faults) => {
   const player = document.querySelector(".player");
-  if (!player || !player.querySelector("canvas")) { found.push("the player is not drawn"); return; }
+  if (!player || !player.querySelector("canvas")) { faults.push("the player is not drawn"); return; }
   const [clock, slider] = ["clock", "time"].map((part) => player.querySelector(`[data-part="${part}"]`));
   slider.value = 1.5;
   slider.dispatchEvent(new Event("input"));
-  if (!clock.textContent.startsWith("1.50 s of")) found.push(`the player says ${clock.textContent}`);
+  if (!clock.textContent.startsWith("1.50 s of")) faults.push(`the player says ${clock.textContent}`);
 };
 """
 # of a suite: another case is chosen and drawn
@@ -40,8 +40,8 @@ def ensemble() -> str:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     case = Case(pier, initial=release, duration=1.0, name="release")
-    found = rw.ensemble(case, runs=[], copies=8, workers=1)
-    return ensemble_page(found.made_by()).html()
+    ensemble = rw.ensemble(case, runs=[], copies=8, workers=1)
+    return ensemble_page(ensemble.made_by()).html()
 
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"

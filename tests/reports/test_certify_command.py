@@ -32,20 +32,20 @@ def certificate(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def changed(certificate: Path, folder: Path) -> Path:
-    found = json.loads(certificate.read_text())
-    found["fingerprint"][5]["signals"]["tilt"][30] += 1e-5
+    stored = json.loads(certificate.read_text())
+    stored["fingerprint"][5]["signals"]["tilt"][30] += 1e-5
     path = folder / "changed.json"
-    path.write_text(json.dumps(found))
+    path.write_text(json.dumps(stored))
     return path
 
 
 def test_a_certificate_says_what_holds_and_what_is_open(certificate: Path) -> None:
-    found = json.loads(certificate.read_text())
-    assert len(found["fingerprint"]) == 14
-    assert {claim["status"] for claim in found["claims"]} == {"verified"}
-    assert all(claim["measured"] <= claim["bound"] for claim in found["claims"])
-    assert any("no experiment" in point for point in found["not_covered"])
-    assert {"python", "numpy", "rockwobble"} <= set(found["versions"])
+    stored = json.loads(certificate.read_text())
+    assert len(stored["fingerprint"]) == 14
+    assert {claim["status"] for claim in stored["claims"]} == {"verified"}
+    assert all(claim["measured"] <= claim["bound"] for claim in stored["claims"])
+    assert any("no experiment" in point for point in stored["not_covered"])
+    assert {"python", "numpy", "rockwobble"} <= set(stored["versions"])
 
 
 def test_verify_answers_with_one_word_and_its_exit_code(
@@ -87,15 +87,15 @@ def test_nothing_is_certified_without_a_claim() -> None:
 def test_a_certificate_of_an_engine_holds_claims_of_that_engine_alone(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found: list[Result] = []
+    claims: list[Result] = []
 
     def make(_: Subject, results: Iterable[Result], __: object) -> dict[str, list[str]]:
-        found.extend(results)
+        claims.extend(results)
         return {"claims": [], "fingerprint": []}
 
     monkeypatch.setattr(certificate_package, "certify", make)
     assert run("certify", "--engine", "mujoco", "--only", "conserved") == 0
-    assert {result.subject for result in found} == {"mujoco"}
+    assert {result.subject for result in claims} == {"mujoco"}
 
 
 def test_pytest_has_an_item_for_the_certificate(pytester: pytest.Pytester, certificate: Path) -> None:
@@ -128,9 +128,9 @@ def test_a_model_of_somebody_else_is_checked(
     assert "return energy" in capsys.readouterr().out
     assert run("check", "--model", "rocking_of_mine:wrong") == 1
     assert "FAILED" in capsys.readouterr().out
-    found = json.loads((tmp_path / "good.json").read_text())
-    assert "of a release" in json.dumps(found)
-    groups = {result["group"] for result in found["results"]}
+    stored = json.loads((tmp_path / "good.json").read_text())
+    assert "of a release" in json.dumps(stored)
+    groups = {result["group"] for result in stored["results"]}
     assert groups == {"exact", "conserved", "rest", "invariance", "trace", "agreement"}
 
 

@@ -59,10 +59,10 @@ def test_groups_that_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     # one line a group, and the result
     lines = capsys.readouterr().out.splitlines()
     assert [line.split(":")[0] for line in lines[:-1]] == ["equations of motion", "rest and uplift"]
-    found = json.loads(paths[0].read_text())
-    assert found["passed"] is True
-    assert {result["group"] for result in found["results"]} == {"rest", "equations"}
-    assert all(result["reason"] and result["subject"] == "reduced model" for result in found["results"])
+    stored = json.loads(paths[0].read_text())
+    assert stored["passed"] is True
+    assert {result["group"] for result in stored["results"]} == {"rest", "equations"}
+    assert all(result["reason"] and result["subject"] == "reduced model" for result in stored["results"])
     suites = {suite.get("name") for suite in ElementTree.parse(paths[1]).iter("testsuite")}
     assert suites == {"rest", "equations"}
     assert paths[2].read_text().startswith("# rockwobble check\n\n")
@@ -84,9 +84,9 @@ def test_failures_alone_are_printed_and_end_with_1(
 def test_a_finding_of_a_failure_has_measure_bound_reason_and_cause() -> None:
     failed = dataclasses.replace(BAD, cause="axial inertia +5 %")
     summary, finding = checks(GOOD, failed).findings()
-    found = {name: value for name, value, _ in finding.quantities()}
-    assert (finding.level, found["demand"], found["bound"]) == ("not satisfied", failed.value, failed.bound)
-    assert (found["detail_reason"], found["detail_cause"]) == (failed.reason, failed.cause)
+    values = {name: value for name, value, _ in finding.quantities()}
+    assert (finding.level, values["demand"], values["bound"]) == ("not satisfied", failed.value, failed.bound)
+    assert (values["detail_reason"], values["detail_cause"]) == (failed.reason, failed.cause)
     assert (summary.key, [value for _, value, _ in summary.quantities()][:2]) == ("check.failed", [1, 2])
 
 

@@ -259,8 +259,8 @@ def test_findings_of_the_ensembles_are_those_of_their_tables() -> None:
 
 
 def test_the_limits_on_one_screen_are_the_published_ones() -> None:
-    found = Validity.load(PUBLISHED / "validity")
-    number = limits_of(found.tables, found.structure).set_index(["limit", "number"])["value"]
+    loaded = Validity.load(PUBLISHED / "validity")
+    number = limits_of(loaded.tables, loaded.structure).set_index(["limit", "number"])["value"]
 
     def ends(models: str, form: str) -> str:
         return " to ".join(f"{number[f'traces.{models}', end]:{form}}" for end in ("low", "high"))

@@ -91,7 +91,7 @@ def test_conditions_are_stated_of_a_case_and_of_several_and_no_default_is() -> N
         text = "\n".join(case_lines(case_of({"gravity": 3.75, **options}, MOTIONS[0])))
         assert [each for each in [*words, "3.75 m/s²"] if each not in text] == []
     members = [rw.Case(BODY, MOTIONS[0], gravity=gravity, name=str(gravity)) for gravity in (9.81, 3.75)]
-    found = rw.ensemble(members, runs=[], workers=1)
-    assert "Gravity: differs" in page_of(found.made_by("rockwobble")).markdown()
+    ensemble = rw.ensemble(members, runs=[], workers=1)
+    assert "Gravity: differs" in page_of(ensemble.made_by("rockwobble")).markdown()
     for usual in ({}, {"gravity": 9.81, "tendon_prestress": 0.0, "slab_mass_ratio": 0.0}):
         assert conditions(usual) == []

@@ -58,9 +58,9 @@ def made_up(factor: float = 1.1) -> Ensemble:
 
 
 def test_sizes_of_the_members_are_a_range():
-    found = made_up()
-    facts = {**found.facts, "semidiagonal": {"from": 2.0, "to": 9.0, "count": 3}}
-    assert "R = 2 to 9 m," in page_of(dataclasses.replace(found, facts=facts).made_by()).markdown()
+    ensemble = made_up()
+    facts = {**ensemble.facts, "semidiagonal": {"from": 2.0, "to": 9.0, "count": 3}}
+    assert "R = 2 to 9 m," in page_of(dataclasses.replace(ensemble, facts=facts).made_by()).markdown()
 
 
 def test_the_page_is_the_golden_one():
@@ -68,13 +68,13 @@ def test_the_page_is_the_golden_one():
     is_golden(made_up())
 
 
-def numbers(found: Ensemble, key: str) -> dict[str, object]:
-    (finding,) = (each for each in found.findings() if each.key == f"ensemble.{key}")
+def numbers(ensemble: Ensemble, key: str) -> dict[str, object]:
+    (finding,) = (each for each in ensemble.findings() if each.key == f"ensemble.{key}")
     return {name: value for name, value, _ in finding.quantities()}
 
 
-def keys(found: Ensemble) -> set[str]:
-    return {each.key.removeprefix("ensemble.") for each in found.findings()}
+def keys(ensemble: Ensemble) -> set[str]:
+    return {each.key.removeprefix("ensemble.") for each in ensemble.findings()}
 
 
 def test_findings_state_the_verdict_and_the_numbers_of_each_main_pair():
@@ -90,14 +90,14 @@ def test_findings_state_the_verdict_and_the_numbers_of_each_main_pair():
 
 
 def test_few_members_bound_nothing_and_failed_ones_bound_the_median():
-    found = made_up()
-    few = found.members[found.members["member"].isin([f"record {i}" for i in range(1, 6)])]
-    unsure = ensemble_of(few, found.facts)
+    ensemble = made_up()
+    few = ensemble.members[ensemble.members["member"].isin([f"record {i}" for i in range(1, 6)])]
+    unsure = ensemble_of(few, ensemble.facts)
     assert keys(unsure) == {"undecided", "few", "pair", "not_significant", "none_overturns"}
     assert "ratio" not in numbers(unsure, "pair")
-    members = found.members.copy()
+    members = ensemble.members.copy()
     members.loc[11:15, "outcome"] = "failed"  # half of the members: the rest do not settle the median
-    bounded = ensemble_of(members, found.facts)
+    bounded = ensemble_of(members, ensemble.facts)
     before = {
         name: table[[each for each in table if not each.endswith(("_least", "_most"))]]
         for name, table in bounded.tables.items()

@@ -91,7 +91,7 @@ def problems() -> list[Problem]:
     """Releases and records on all supports, with and without slab, loss and tendon."""
     random = np.random.default_rng(SEED)
     records = [el_centro_1940(), *synthetic_motions(3, peak=4.0, seed=SEED)]
-    found = []
+    cases = []
     for place in range(COUNT):
         support = ("recess", "flat", "planar", "recess")[place % 4]
         tan_alpha = float(random.uniform(0.1, 0.5))
@@ -124,8 +124,8 @@ def problems() -> list[Problem]:
             rolling_resistance=float(random.uniform(0.001, 0.02)) * body.base_radius if loss else 0.0,
             tendon=tendon,
         )
-        found.append(Problem(case, support, azimuth))
-    return found
+        cases.append(Problem(case, support, azimuth))
+    return cases
 
 
 RUNS = """

@@ -124,9 +124,9 @@ window.lookFurther = (found) => {
 
 def given(page: Path) -> dict[str, Any]:
     """Return what the page was given."""
-    found = re.search(r'id="given">(.*?)</script>', page.read_text(encoding="utf-8"), re.DOTALL)
-    assert found
-    return json.loads(found[1])
+    match = re.search(r'id="given">(.*?)</script>', page.read_text(encoding="utf-8"), re.DOTALL)
+    assert match
+    return json.loads(match[1])
 
 
 @pytest.fixture
@@ -176,22 +176,22 @@ def test_the_options_are_where_the_sliders_stand(folder: Path, capsys: pytest.Ca
     record = ["--record-x", "EW.AT2", "--record-y", "NS.AT2", "--scale", "2"]
     assert call(*size, *record, "--support", "flat", "--out", "mine.html") == 0
     assert "mine.html: " in capsys.readouterr().out
-    found = given(folder / "mine.html")
-    state = {name: found["state"][name] for name in ("diameter", "height", "slab", "loss", "intensity")}
+    page_data = given(folder / "mine.html")
+    state = {name: page_data["state"][name] for name in ("diameter", "height", "slab", "loss", "intensity")}
     assert state == pytest.approx(
         {"diameter": 0.5, "height": 3.0, "slab": 1.0, "loss": 2.0, "intensity": 2.0}
     )
-    assert found["state"]["support"] == "flat"
-    (stated,) = found["records"]
+    assert page_data["state"]["support"] == "flat"
+    (stated,) = page_data["records"]
     assert stated["options"] == {"record-x": "EW.AT2", "record-y": "NS.AT2"}
     assert stated["python"] == "rw.read_record('EW.AT2', 'NS.AT2')"
 
 
 def test_a_release_and_a_plane_are_where_it_begins(folder: Path) -> None:
     assert call("--release-tilt-deg", "4", "--rolling-rate", "0.3", "--duration", "7") == 0
-    found = given(folder / "explore.html")
-    assert (found["state"]["record"], found["state"]["rate"], found["free"]) == (-1, 0.3, 7.0)
-    assert found["state"]["tilt"] == pytest.approx(4.0)
+    page_data = given(folder / "explore.html")
+    assert (page_data["state"]["record"], page_data["state"]["rate"], page_data["free"]) == (-1, 0.3, 7.0)
+    assert page_data["state"]["tilt"] == pytest.approx(4.0)
     assert call("--plane", "1", "--overwrite") == 0
     state = given(folder / "explore.html")["state"]
     assert (state["support"], state["plane"]) == ("planar", pytest.approx(57.2957795))

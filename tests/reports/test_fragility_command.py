@@ -39,15 +39,15 @@ SMALL = [
 
 
 @pytest.fixture(scope="module")
-def found() -> Fragility:
+def study() -> Fragility:
     return made_up()
 
 
 @pytest.mark.slow
-def test_each_question_gets_its_pairs(found):
+def test_each_question_gets_its_pairs(study):
     pairs = {
         question: [f"{row['method']} / {row['against']}" for row in rows if row["cylinder"] == "pier"]
-        for question, rows in main_contrasts(found).items()
+        for question, rows in main_contrasts(study).items()
     }
     assert pairs == {
         "planar": ["planar x / recess model"],
@@ -65,18 +65,18 @@ def test_each_question_gets_its_pairs(found):
     }
 
 
-def test_a_pair_the_other_way_round_is_turned(found):
+def test_a_pair_the_other_way_round_is_turned(study):
     order = ["planar x", "recess model"]
-    runs = pd.concat([found.runs[found.runs["method"] == name] for name in order])
-    turned = main_contrasts(fragility_of(runs, found.points, found.facts))["planar"][0]
-    straight = main_contrasts(found)["planar"][0]
+    runs = pd.concat([study.runs[study.runs["method"] == name] for name in order])
+    turned = main_contrasts(fragility_of(runs, study.points, study.facts))["planar"][0]
+    straight = main_contrasts(study)["planar"][0]
     assert (turned["method"], turned["against"]) == ("planar x", "recess model")
     for name in ("ratio", "ratio_low", "ratio_high", "dispersion_difference"):
         assert turned[name] == pytest.approx(straight[name], rel=1e-9)
 
 
-def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
-    ratios, pier, _ = pictures(found)
+def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(study):
+    ratios, pier, _ = pictures(study)
     assert [panel.title for panel in ratios.panels] == ["Mean of all cylinders"]
     supports = ["Planar analysis", "Ideal recess", "Flat ground", "Recess with clearance"]
     assert [panel.title for panel in pier.panels] == supports
@@ -85,7 +85,7 @@ def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
     assert [line.name for line in lines] == ["recess model", "mujoco recess", "pybullet recess"]
     assert sum(isinstance(layer, Band) for layer in recess.layers) == 3
     marks = next(layer for layer in recess.layers if isinstance(layer, Line) and layer.notes)
-    counts = found.counts.query("cylinder == 'pier' and method == 'recess model' and limit == 'overturned'")
+    counts = study.counts.query("cylinder == 'pier' and method == 'recess model' and limit == 'overturned'")
     np.testing.assert_allclose(marks.x, LEVELS)
     np.testing.assert_allclose(marks.y, counts["k"] / MOTIONS)
     assert marks.notes[0] == f"recess model: {counts['k'].iloc[0]} of 15"
@@ -93,8 +93,8 @@ def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
 
 @pytest.mark.slow
 @needs_chromium
-def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(found, tmp_path):
-    page = page_of(found).html()
+def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(study, tmp_path):
+    page = page_of(study).html()
     assert complaints(page, tmp_path, figures=1 + 2 * 4) == []
 
 
@@ -146,9 +146,9 @@ def test_pages_of_scales_and_of_other_limits_alone() -> None:
     assert pictures(lifted) == []
 
 
-def test_a_fragility_shows_itself(found, tmp_path):
-    shows_itself(found, "motions ", "runs ")
-    loads_as_it_was(found, tmp_path)
+def test_a_fragility_shows_itself(study, tmp_path):
+    shows_itself(study, "motions ", "runs ")
+    loads_as_it_was(study, tmp_path)
 
 
 def stripes_folder(folder: Path, levels: tuple[float, ...] = (2.0, 9.0)) -> Path:
@@ -173,9 +173,9 @@ def test_records_by_level_are_stripes_of_their_own(tmp_path: Path, capsys: Any) 
     small = ["--model", "recess", "--resamples", "40", "--workers", "1"]
     assert call("fragility", "--records", str(records), *small, "--out", str(out)) == 0
     assert "each of 2 levels" in " ".join(capsys.readouterr().out.split())
-    found = Fragility.load(out)
-    assert (found.facts["levels"], found.facts["motions_of_levels"]) == ([2.0, 9.0], [6, 6])
-    assert len(found.runs) == 12
+    loaded = Fragility.load(out)
+    assert (loaded.facts["levels"], loaded.facts["motions_of_levels"]) == ([2.0, 9.0], [6, 6])
+    assert len(loaded.runs) == 12
     assert "each of 2 levels" in (out / "fragility.html").read_text()
     assert call("fragility", "--records", str(records), "--levels", "1,2", "--out", str(tmp_path / "b")) == 2
     said = capsys.readouterr().err

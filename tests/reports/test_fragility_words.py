@@ -25,12 +25,12 @@ pytestmark = pytest.mark.checkout
 
 
 @pytest.fixture(scope="module")
-def found() -> Fragility:
+def study() -> Fragility:
     return made_up()
 
 
-def with_contrasts(found: Fragility, table: pd.DataFrame) -> Fragility:
-    return dataclasses.replace(found, tables={**found.tables, "contrasts": table})
+def with_contrasts(study: Fragility, table: pd.DataFrame) -> Fragility:
+    return dataclasses.replace(study, tables={**study.tables, "contrasts": table})
 
 
 @pytest.mark.slow
@@ -41,12 +41,12 @@ def test_the_page_is_the_golden_one():
 Numbers = list[dict[str, Any]]
 
 
-def numbers(found: Fragility, *keys: str) -> Numbers:
+def numbers(study: Fragility, *keys: str) -> Numbers:
     """Numbers of the findings of some keys, with key and body."""
     return [
         {"key": each.key.partition(".")[2], "body": each.runs}
         | {name: value for name, value, _ in each.quantities()}
-        for each in found.findings()
+        for each in study.findings()
         if each.key.partition(".")[2] in keys
     ]
 
@@ -60,11 +60,11 @@ def numbers(found: Fragility, *keys: str) -> Numbers:
         ((1.2, 1.9), "different", 0.9),
     ],
 )
-def test_a_finding_calls_equivalent_what_its_table_does(found, ends, key, reach):
+def test_a_finding_calls_equivalent_what_its_table_does(study, ends, key, reach):
     ratio = Interval(value=1.0, low=ends[0], high=ends[1])
     row = {**ratio.columns("ratio"), "within": margin_of(ratio), "verdict": ratio.about_one(0.1)}
     pairs = numbers(
-        with_contrasts(found, found.contrasts.assign(**row)), "equivalent", "undecided", "different"
+        with_contrasts(study, study.contrasts.assign(**row)), "equivalent", "undecided", "different"
     )
     assert len(pairs) > 3
     assert {each["key"] for each in pairs} == {key}
@@ -73,20 +73,20 @@ def test_a_finding_calls_equivalent_what_its_table_does(found, ends, key, reach)
         assert each["share"] == (reach if reach is None else pytest.approx(reach, rel=0.05))
 
 
-def by_one_method(found: Fragility, **changes: Any) -> Fragility:
-    runs = found.runs[(found.runs["method"] == "recess model") & (found.runs["cylinder"] == "pier")]
-    points = found.points[found.points["cylinder"] == "pier"]
-    about = {**found.facts, "methods": {"recess model": METHODS["recess model"][1]}}
+def by_one_method(study: Fragility, **changes: Any) -> Fragility:
+    runs = study.runs[(study.runs["method"] == "recess model") & (study.runs["cylinder"] == "pier")]
+    points = study.points[study.points["cylinder"] == "pier"]
+    about = {**study.facts, "methods": {"recess model": METHODS["recess model"][1]}}
     about["cylinders"] = {"pier": {"semidiagonal": 6.0, "tan_alpha": 0.2}}
     return fragility_of(runs.assign(**changes), points, about)
 
 
 @pytest.mark.slow
-def test_too_few_motions_are_counted_without_a_curve(found):
+def test_too_few_motions_are_counted_without_a_curve(study):
     kept = [f"m{n}" for n in range(4)]
     few = fragility_of(
-        *(table[table["motion"].isin(kept)] for table in (found.runs, found.points)),
-        {**found.facts, "motions": 4},
+        *(table[table["motion"].isin(kept)] for table in (study.runs, study.points)),
+        {**study.facts, "motions": 4},
     )
     page = page_of(few)
     words = page.markdown()
@@ -100,10 +100,10 @@ def test_too_few_motions_are_counted_without_a_curve(found):
 
 
 @pytest.mark.parametrize("factor", [1.0, 30.0, 1.0 / 30.0])
-def test_every_mark_of_a_ratio_lies_within_its_axis(found, factor):
-    scaled = [name for name in found.contrasts if name.startswith("ratio") and name != "ratio_p"]
-    far = found.contrasts.assign(**{name: found.contrasts[name] * factor for name in scaled})
-    ratios = next(p for p in pictures(with_contrasts(found, far)) if p.name == "fragility-ratios")
+def test_every_mark_of_a_ratio_lies_within_its_axis(study, factor):
+    scaled = [name for name in study.contrasts if name.startswith("ratio") and name != "ratio_p"]
+    far = study.contrasts.assign(**{name: study.contrasts[name] * factor for name in scaled})
+    ratios = next(p for p in pictures(with_contrasts(study, far)) if p.name == "fragility-ratios")
     marks = 0
     for panel in ratios.panels:
         for layer in panel.layers:
@@ -114,12 +114,12 @@ def test_every_mark_of_a_ratio_lies_within_its_axis(found, factor):
     assert marks > 3
 
 
-def test_one_method_is_not_asked_whether_it_agrees_and_states_its_median(found):
-    one = by_one_method(found)
-    fit = found.fits.set_index(["cylinder", "method", "limit"]).loc["pier", "recess model", "overturned"]
+def test_one_method_is_not_asked_whether_it_agrees_and_states_its_median(study):
+    one = by_one_method(study)
+    fit = study.fits.set_index(["cylinder", "method", "limit"]).loc["pier", "recess model", "overturned"]
     (median,) = numbers(one, "median", "equivalent", "different", "undecided")
     assert median["intensity"] == tuple(fit[["median", "median_low", "median_high"]])
-    still = by_one_method(found, outcome="stands", peak_tilt=0.5)
+    still = by_one_method(study, outcome="stands", peak_tilt=0.5)
     assert [each["key"] for each in numbers(still, "nothing_overturns", "median", "bounded")] == [
         "nothing_overturns"
     ]
@@ -128,10 +128,10 @@ def test_one_method_is_not_asked_whether_it_agrees_and_states_its_median(found):
 @pytest.mark.slow
 @pytest.mark.parametrize("cylinders", [("pier",), ("pier", "tower")])
 def test_each_reason_for_no_curve_lists_its_limits_once(cylinders):
-    found = made_up(cylinders)
+    study = made_up(cylinders)
     kinds = {0: "separated", 1: "not increasing", 2: "one motion", 3: "fitted"}
-    fits = found.fits.assign(kind=[kinds[place % 4] for place in range(len(found.fits))])
-    changed = dataclasses.replace(found, tables={**found.tables, "fits": fits})
+    fits = study.fits.assign(kind=[kinds[place % 4] for place in range(len(study.fits))])
+    changed = dataclasses.replace(study, tables={**study.tables, "fits": fits})
     values: Any = fragility_values(changed)
     lines = {each["reason"].removeprefix("no_curve_"): each["names"] for each in numbers(changed, "no_curve")}
     assert {*lines} == {"separated", "not increasing", "one motion"}
@@ -162,11 +162,11 @@ def test_each_reason_for_no_curve_lists_its_limits_once(cylinders):
     ],
 )
 def test_bounds_of_a_median_are_stated(kind: str, exceeded: int, reason: str) -> None:
-    found = made_up(("pier",))
-    fits = found.fits.copy()
+    study = made_up(("pier",))
+    fits = study.fits.copy()
     chosen = (fits["limit"] == "overturned") & (fits["method"] == "recess model")
     fits.loc[chosen, ["kind", "exceeded", "runs"]] = [kind, exceeded, 8]
-    changed = dataclasses.replace(found, tables={**found.tables, "fits": fits})
+    changed = dataclasses.replace(study, tables={**study.tables, "fits": fits})
     (bound,) = (each for each in numbers(changed, "bounded") if each["name"] == "recess model")
     assert bound["reason"] == reason
     assert lines_of("word." + reason)
@@ -176,6 +176,6 @@ def test_bounds_of_a_median_are_stated(kind: str, exceeded: int, reason: str) ->
 def test_a_dispersion_that_was_given_for_the_curves_is_stated(total):
     published = Fragility.load(Path(__file__).parents[2] / "reports" / "published" / "risk" / "p695")
     hazard = {**published.facts["hazard"], "total_dispersion": total}
-    found = dataclasses.replace(published, facts={**published.facts, "hazard": hazard}).findings()
-    stated = [value for each in found if each.key == "risk.dispersion" for _, value, _ in each.quantities()]
+    findings = dataclasses.replace(published, facts={**published.facts, "hazard": hazard}).findings()
+    stated = [value for one in findings if one.key == "risk.dispersion" for _, value, _ in one.quantities()]
     assert stated == [total] * bool(total)

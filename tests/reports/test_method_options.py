@@ -25,9 +25,9 @@ def test_every_command_of_a_cylinder_states_it_in_the_same_way(name: str) -> Non
 
 
 def test_settings_are_whole_numbers_numbers_or_words() -> None:
-    found = settings(["ring_facets=64", " ring_clearance = 1e-2", "cone=pyramidal"])
-    assert found == {"ring_facets": 64, "ring_clearance": 0.01, "cone": "pyramidal"}
-    assert [type(value) for value in found.values()] == [int, float, str]
+    values = settings(["ring_facets=64", " ring_clearance = 1e-2", "cone=pyramidal"])
+    assert values == {"ring_facets": 64, "ring_clearance": 0.01, "cone": "pyramidal"}
+    assert [type(value) for value in values.values()] == [int, float, str]
     assert settings(None) == {}
 
 

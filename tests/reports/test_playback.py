@@ -50,11 +50,11 @@ def test_the_page_draws_the_mass_centre_of_the_run(comparison):
 def test_a_fall_after_the_end_of_the_case_is_played():
     release = InitialState(tilt=1.1 * PIER.alpha, rolling_rate=0.1)
     gone = Case(PIER, initial=release, duration=0.5, name="gone")
-    found = rw.comparison(gone, runs=RECESS, workers=1)
-    end = max(float(trace.time[-1]) for trace in found.traces.values())
-    assert playback(case_views(found)[0])["length"] == end > 1.0
+    comparison = rw.comparison(gone, runs=RECESS, workers=1)
+    end = max(float(trace.time[-1]) for trace in comparison.traces.values())
+    assert playback(case_views(comparison)[0])["length"] == end > 1.0
     # traces of different length are compared as far as both reach
-    row = found.summary.iloc[0]
+    row = comparison.summary.iloc[0]
     assert (row["outcome"], row["reference_outcome"]) == ("overturned", "overturned")
     assert 0.0 < row["agreement_time"] <= end
 
@@ -64,12 +64,12 @@ def test_playback_starts_at_uplift_with_slab_and_tendon():
     push[200:, 0] = np.linspace(0.0, 1.5, 100) * 9.81 * PIER.tan_alpha
     frame = rw.WobblingFrame(PIER, 1.0, columns=1)
     case = Case(frame, GroundMotion(push, 0.01), tendon=rw.Tendon(prestress=0.1), name="pushed")
-    found = rw.comparison(case, runs=RECESS, workers=1)
-    spec = playback(case_views(found)[0])
-    uplift = min(trace.uplift_time for trace in found.traces.values())
+    comparison = rw.comparison(case, runs=RECESS, workers=1)
+    spec = playback(case_views(comparison)[0])
+    uplift = min(trace.uplift_time for trace in comparison.traces.values())
     assert spec["start"] == pytest.approx(uplift - 0.5)
     assert spec["slab"] is spec["tendon"] is True
-    largest = max(float(trace.tilt.max()) for trace in found.traces.values())
+    largest = max(float(trace.tilt.max()) for trace in comparison.traces.values())
     assert spec["shown"] * largest < np.radians(25.0) or spec["shown"] == 1
     assert all(factor * largest >= np.radians(25.0) for factor in spec["magnify"] if factor > spec["shown"])
 

@@ -112,12 +112,12 @@ def test_published_diagnostics_are_codes() -> None:
 
 
 def test_the_guide_states_the_needs_of_the_published_limits() -> None:
-    found = needs(Validity.load(PUBLISHED / "validity").tables)
+    table = needs(Validity.load(PUBLISHED / "validity").tables)
     guide = (PUBLISHED.parents[1] / "docs" / "guide" / "limits.md").read_text(encoding="utf-8")
     for name in ("friction", "moment"):
-        heads = [f"{each:g}" for each in sorted(found["intensity"].unique())]
+        heads = [f"{each:g}" for each in sorted(table["intensity"].unique())]
         lines = [["tan α", *heads]]
-        for tan_alpha, own in found.groupby("tan_alpha"):
+        for tan_alpha, own in table.groupby("tan_alpha"):
             known = {f"{row['intensity']:g}": number(row[name], "most .3g") for row in own.to_dict("records")}
             lines.append([f"{tan_alpha:g}", *(known.get(head, "–") for head in heads)])
         head, *rows = (f"| {' | '.join(line)} |" for line in lines)

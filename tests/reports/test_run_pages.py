@@ -41,12 +41,12 @@ def run_of(case: rw.Case, run: rw.Run) -> SingleRun:
     )
 
 
-def sizes(found: SingleRun) -> dict[str, dict[str, Value]]:
-    return {each.key.partition(".")[2]: dict(each.values) for each in found.findings().of("quantity")}
+def sizes(run: SingleRun) -> dict[str, dict[str, Value]]:
+    return {each.key.partition(".")[2]: dict(each.values) for each in run.findings().of("quantity")}
 
 
-def keys(found: SingleRun) -> list[str]:
-    return [each.key for each in found.findings()]
+def keys(run: SingleRun) -> list[str]:
+    return [each.key for each in run.findings()]
 
 
 @pytest.fixture(scope="module")
@@ -84,10 +84,10 @@ def test_a_run_says_what_its_method_gives_and_no_more():
 def test_a_model_at_rest_says_where_its_base_slides():
     weak = rw.el_centro_1940().scaled(0.3)
     for friction, slides in ((0.5, False), (0.05, True)):
-        found = run_of(rw.Case(PIER, weak, friction=friction, duration=15.0), rw.Run(None, "recess"))
-        assert sizes(found)["friction"]["demand"] == pytest.approx(0.0859, abs=1e-4)
-        assert "run.at_rest" in keys(found)
-        assert ("mode.walls" in keys(found)) == slides
+        run = run_of(rw.Case(PIER, weak, friction=friction, duration=15.0), rw.Run(None, "recess"))
+        assert sizes(run)["friction"]["demand"] == pytest.approx(0.0859, abs=1e-4)
+        assert "run.at_rest" in keys(run)
+        assert ("mode.walls" in keys(run)) == slides
 
 
 def test_a_planar_run_says_in_which_plane_and_with_what_loss():
@@ -156,9 +156,9 @@ def test_a_run_that_its_rounding_decides_is_undecided():
 
 @pytest.mark.parametrize(("part", "before"), [(0.01, "before_largest_tilt"), (9.0, None), (math.inf, "none")])
 def test_a_single_trace_is_doubted_from_when_its_copies_spread(part, before):
-    found = single_run_of(rw.simulate(rw.Case(PIER, rw.el_centro_1940(), duration=3.0))).made_by()
+    trace = single_run_of(rw.simulate(rw.Case(PIER, rw.el_centro_1940(), duration=3.0))).made_by()
     single = {"copies_part": part, "perturbation": 0.01, "answer": "rockwobble ensemble"}
-    spread = dataclasses.replace(found, facts={**found.facts, "single_trace": single})
+    spread = dataclasses.replace(trace, facts={**trace.facts, "single_trace": single})
     doubts = [each.values for each in spread.findings() if each.key == "run.not_reproducible"]
     assert [each["reason"] for each in doubts] == ([] if before == "none" else [before])
     assert ("Distribution: `rockwobble ensemble`" in page_of(spread).markdown()) == bool(doubts)
@@ -171,9 +171,9 @@ def test_a_sweep_of_cases_counts_runs_and_how_they_end(swept):
 
 
 def test_a_map_has_a_cell_per_run_or_states_the_number(monkeypatch):
-    found = rw.sweep(GRID, workers=1)
-    own = found.table[found.table["tan_alpha"] == 0.1].set_index(["scale", "semidiagonal"])
-    (picture,) = figure.pictures(found)
+    sweep = rw.sweep(GRID, workers=1)
+    own = sweep.table[sweep.table["tan_alpha"] == 0.1].set_index(["scale", "semidiagonal"])
+    (picture,) = figure.pictures(sweep)
     heat = picture.panels[0].layers[0]
     assert isinstance(heat, Heat)
     for i, scale in enumerate(GRID.scales):
@@ -186,7 +186,7 @@ def test_a_map_has_a_cell_per_run_or_states_the_number(monkeypatch):
     assert np.count_nonzero(fell) == (own["outcome"] == "overturned").sum() > 0
     monkeypatch.setattr(figure, "_MOST_CELLS", 4)
     monkeypatch.setattr(figure, "_MOST_MAPS", 1)
-    (picture,) = figure.pictures(found)
+    (picture,) = figure.pictures(sweep)
     assert picture.panels[0].layers[0].values.shape == (2, 2)
     left_out = {"count_sizes": 2, "count_scales": 2, "count": 1, "count_all": 2}
     assert isinstance(picture.caption, Finding)
@@ -230,7 +230,7 @@ def test_a_stored_folder_draws_its_pages_again(tmp_path, capsys, command):
 @needs_chromium
 def test_pages_of_runs_are_drawn(swept, tmp_path: Path):
     pages = [page_of(run_of(RELEASE, rw.Run(None, "recess")).made_by()), registry.page_of(swept["grid"])]
-    found = complaints_of_all([page.html() for page in pages], tmp_path, figures=2)
-    assert found == {0: [], 1: []}
+    complaints = complaints_of_all([page.html() for page in pages], tmp_path, figures=2)
+    assert complaints == {0: [], 1: []}
     (wrong,) = complaints_of_all([registry.page_of(swept["cases"]).html()], tmp_path, figures=1).values()
     assert wrong == []

@@ -44,20 +44,20 @@ def test_comparison_shows_itself_case_by_case(comparison, tmp_path):
 
 def test_ensembles_and_sweeps_show_themselves(tmp_path):
     grid = rs.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
-    for found, *facts in (
+    for ensemble, *facts in (
         (rw.ensemble(RELEASE, runs=[], copies=4, workers=1), "4, perturbed copies", "overturned 0 of 8"),
         (rw.sweep([RELEASE], workers=1), "runs 1, stands 1"),
         (rw.sweep(grid, workers=1), "runs 4, stands 2, overturned 2"),
     ):
-        shows_itself(found, *facts)
-        loads_as_it_was(found, tmp_path / facts[0])
+        shows_itself(ensemble, *facts)
+        loads_as_it_was(ensemble, tmp_path / facts[0])
 
 
 @pytest.mark.slow
 def test_budgets_and_external_trajectories_load_as_they_were(tmp_path):
     external = tmp_path / "mine.csv"
-    found = rw.simulate(RELEASE)
-    pd.DataFrame({"time [s]": found.time, "tilt [rad]": found.tilt}).to_csv(external, index=False)
+    trace = rw.simulate(RELEASE)
+    pd.DataFrame({"time [s]": trace.time, "tilt [rad]": trace.tilt}).to_csv(external, index=False)
     run = rw.Run("mujoco", "recess", 1e-3)
     made = rw.comparison(RELEASE, runs=[run], external=[external], budget=True, workers=1)
     assert len(made.budgets) == 1

@@ -46,13 +46,13 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert "b = " not in printed  # of which of the sizes?
     written = {"spectrum.html", "spectrum.json", "manifest.json"} | {f"{name}.parquet" for name in TABLES}
     assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt", "finished"}
-    found = OverturningSpectrum.load(tmp_path).maps
+    loaded = OverturningSpectrum.load(tmp_path).maps
     sizes, levels = np.linspace(0.5, 20.0, 4), np.linspace(1.0, 9.0, 8)
-    assert np.array_equal(found.semidiagonals, sizes)
+    assert np.array_equal(loaded.semidiagonals, sizes)
     peaks = reduced.peak_tilts(
         sizes, 0.2, el_centro_1940(), levels * 9.81 * 0.2 / el_centro_1940().peak, rtol=1e-8
     )
-    assert found.peak_tilt[SPATIAL] == pytest.approx(peaks, rel=SAME_RUN)
+    assert loaded.peak_tilt[SPATIAL] == pytest.approx(peaks, rel=SAME_RUN)
     lowest = pd.read_parquet(tmp_path / "lowest.parquet")
     assert lowest["confirmed"].any()
     assert (lowest["intensity"] <= lowest["on_grid"].fillna(np.inf)).sum() >= 6
@@ -92,13 +92,13 @@ def test_the_page_is_the_golden_one():
 Numbers = dict[str, dict[str, Any]]
 
 
-def numbers(found: TiltMaps, checked: pd.DataFrame | None = None, **columns: object) -> Numbers:
+def numbers(maps: TiltMaps, checked: pd.DataFrame | None = None, **columns: object) -> Numbers:
     """Return the numbers of the findings by key; `columns` stand in the table of the lowest."""
-    lowest = found.lowest_frame().assign(**({"confirmed": True} | columns))
-    tables = {"lowest": lowest, "gaps": safe_gaps(found), "contrast": planar_contrast(found)}
+    lowest = maps.lowest_frame().assign(**({"confirmed": True} | columns))
+    tables = {"lowest": lowest, "gaps": safe_gaps(maps), "contrast": planar_contrast(maps)}
     tables["checked"] = pd.DataFrame({"agrees": [True], "sensitive": [False]}) if checked is None else checked
-    tables |= {"spectrum": found.to_frame(), "record": record_frame(found.motion)}
-    spectrum = OverturningSpectrum(tables=tables, facts=found.facts())
+    tables |= {"spectrum": maps.to_frame(), "record": record_frame(maps.motion)}
+    spectrum = OverturningSpectrum(tables=tables, facts=maps.facts())
     return {
         each.key.removeprefix("spectrum."): {name: value for name, value, _ in each.quantities()}
         for each in spectrum.findings()
@@ -110,9 +110,9 @@ def test_the_answer_counts_what_is_missed_and_leaves_failed_cells_out(spectrum):
     planar = falls["planar_x"] | falls["planar_y"]
     shares = (falls[SPATIAL] & ~planar).mean(), (planar & ~falls[SPATIAL]).mean()
     assert all(0.01 < share < 0.1 for share in shares)
-    found = numbers(spectrum)["overturned"]
-    assert (found["share_unconservative"], found["share_conservative"]) == shares
-    assert (found["share"], found["count"]) == (falls[SPATIAL].mean(), 144)
+    values = numbers(spectrum)["overturned"]
+    assert (values["share_unconservative"], values["share_conservative"]) == shares
+    assert (values["share"], values["count"]) == (falls[SPATIAL].mean(), 144)
     tilt = spectrum.peak_tilt[PLANAR_X].copy()
     tilt[3, 4] = tilt[5, 6] = np.nan
     without = numbers(dataclasses.replace(spectrum, peak_tilt={**spectrum.peak_tilt, PLANAR_X: tilt}))
@@ -132,38 +132,38 @@ def test_bands_of_sizes_in_which_planar_analysis_is_unconservative_are_listed(sp
 def test_a_spectrum_without_overturning_says_how_it_was_searched(spectrum):
     still = {name: np.zeros_like(tilt) for name, tilt in spectrum.peak_tilt.items()}
     none = {name: np.full_like(lowest, np.nan) for name, lowest in spectrum.lowest.items()}
-    found = numbers(dataclasses.replace(spectrum, peak_tilt=still, lowest=none))
-    assert found["overturned"]["share"] == 0.0
-    assert found["search"] == {"intensity": 1.0, "intensity_step": 0.2}
-    assert not {"gaps", "boundary"} & {*found}
+    values = numbers(dataclasses.replace(spectrum, peak_tilt=still, lowest=none))
+    assert values["overturned"]["share"] == 0.0
+    assert values["search"] == {"intensity": 1.0, "intensity_step": 0.2}
+    assert not {"gaps", "boundary"} & {*values}
 
 
-def with_safe(found: TiltMaps, cells: list[tuple[int, int]]) -> TiltMaps:
+def with_safe(maps: TiltMaps, cells: list[tuple[int, int]]) -> TiltMaps:
     """Overturned from the fourth intensity on, but in some cells."""
     tilt = np.full((12, 12), math.inf)
     tilt[:, :3] = 0.1
     for cell in cells:
         tilt[cell] = 0.1
-    edge = np.full(12, found.intensities[3])
-    peaks, lowest = {**found.peak_tilt, SPATIAL: tilt}, {**found.lowest, SPATIAL: edge}
-    return dataclasses.replace(found, peak_tilt=peaks, lowest=lowest)
+    edge = np.full(12, maps.intensities[3])
+    peaks, lowest = {**maps.peak_tilt, SPATIAL: tilt}, {**maps.lowest, SPATIAL: edge}
+    return dataclasses.replace(maps, peak_tilt=peaks, lowest=lowest)
 
 
 def test_gaps_are_counted_and_the_widest_is_spanned(spectrum):
     stated = ("count", "count_sizes", "count_all", "intensity", "intensity_end")
     for cells, count, end in (([(2, 5)], 1, 6.0), ([(2, 5), (2, 6), (4, 8)], 2, 7.0)):
-        found = numbers(with_safe(spectrum, cells))["gaps"]
-        assert [found[name] for name in stated] == [count, count, 12, 6.0, end]
+        gaps = numbers(with_safe(spectrum, cells))["gaps"]
+        assert [gaps[name] for name in stated] == [count, count, 12, 6.0, end]
 
 
 def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
     none = dataclasses.replace(spectrum, below={name: np.zeros(12) for name in SERIES})
     count = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
-    found = numbers(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
+    values = numbers(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
     # 0 of 5 draws: below 1 - 0.05^(1/5)
-    assert found["probes"]["share"] == pytest.approx(1.0 - 0.05**0.2)
-    assert found["unseen"] == {"count": 0, "count_all": count}
-    assert "chance" not in found
+    assert values["probes"]["share"] == pytest.approx(1.0 - 0.05**0.2)
+    assert values["unseen"] == {"count": 0, "count_all": count}
+    assert "chance" not in values
     confirmed = np.ones(36, dtype=bool)
     confirmed[[0, 3]] = False
     chance = numbers(none, confirmed=confirmed)["chance"]
@@ -172,8 +172,8 @@ def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
 
 def test_the_check_tells_chance_from_error(spectrum):
     cells = pd.DataFrame({"agrees": [True, False, False], "sensitive": [False, True, False]})
-    found = numbers(spectrum, cells)["checked"]
-    assert [found[f"count{name}"] for name in ("", "_agree", "_chance", "_other")] == [3, 1, 1, 1]
+    values = numbers(spectrum, cells)["checked"]
+    assert [values[f"count{name}"] for name in ("", "_agree", "_chance", "_other")] == [3, 1, 1, 1]
 
 
 @pytest.mark.slow
@@ -193,9 +193,9 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     acceleration[:, still] = 0.0
     motion = GroundMotion(acceleration, 0.01, "one component")
     plan = SpectrumPlan(semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0, probes=0)
-    found = tilt_maps(0.1, motion, plan)
-    assert not found.peak_tilt[SERIES[1 + still]].any()
-    picture = picture_of(found)
+    maps = tilt_maps(0.1, motion, plan)
+    assert not maps.peak_tilt[SERIES[1 + still]].any()
+    picture = picture_of(maps)
     assert still or svg(picture)  # the planes differ in their place alone
     # the planar run is the 3D run
-    assert numbers(found)["overturned"]["share_unconservative"] == 0.0
+    assert numbers(maps)["overturned"]["share_unconservative"] == 0.0

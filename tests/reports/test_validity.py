@@ -26,12 +26,12 @@ LARGEST = 8_000_000  # bytes of a page
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> Validity:
+def validity(tmp_path_factory: pytest.TempPathFactory) -> Validity:
     return tiny_validity(tmp_path_factory.getbasetemp())
 
 
-def test_the_document_shows_every_picture_and_its_tables_are_whole(found: Validity) -> None:
-    page = page_of(found)
+def test_the_document_shows_every_picture_and_its_tables_are_whole(validity: Validity) -> None:
+    page = page_of(validity)
     document = page.markdown()
     shown = re.findall(r"\]\((.*?)\.svg\)", document)
     assert sorted(shown) == sorted(picture.name for picture in page.pictures)
@@ -41,34 +41,34 @@ def test_the_document_shows_every_picture_and_its_tables_are_whole(found: Validi
     assert all(len({row.count("|") for row in table}) == 1 for table in tables)
 
 
-def test_every_figure_can_be_read(found: Validity) -> None:
-    for picture in page_of(found).pictures:
+def test_every_figure_can_be_read(validity: Validity) -> None:
+    for picture in page_of(validity).pictures:
         assert len(picture.entries()) <= 8
         assert isinstance(picture.caption, Finding)
         title, words = lines_of(picture.caption.key)
         assert title != words
 
 
-def test_with_a_slab_it_is_named_and_no_clearance_is(found: Validity) -> None:
-    tables = {name: table for name, table in found.tables.items() if name != "rings"}
-    facts = {**found.facts, "slab_mass_ratio": 0.25}
-    page = page_of(dataclasses.replace(found, tables=tables, facts=facts))
+def test_with_a_slab_it_is_named_and_no_clearance_is(validity: Validity) -> None:
+    tables = {name: table for name, table in validity.tables.items() if name != "rings"}
+    facts = {**validity.facts, "slab_mass_ratio": 0.25}
+    page = page_of(dataclasses.replace(validity, tables=tables, facts=facts))
     document = page.markdown()
     assert "## A recess with clearance" not in document
     shown = re.findall(r"\]\((.*?)\.svg\)", document)
     assert sorted(shown) == sorted(picture.name for picture in page.pictures)
 
 
-def test_with_a_tendon_it_is_stated_and_nothing_stands_against_flat_ground(found: Validity) -> None:
-    tables = dict(found.tables)
+def test_with_a_tendon_it_is_stated_and_nothing_stands_against_flat_ground(validity: Validity) -> None:
+    tables = dict(validity.tables)
     tables["peaks"] = tables["peaks"].assign(flat=math.nan, tension=1.25)
     free = dict.fromkeys(("flat_turn", "flat_period", "flat_peak"), math.nan)
     tables["free_response"] = tables["free_response"].assign(tension=1.0, **free)
     for name, model in (("records", "method"), ("following", "reference_support")):
         tables[name] = tables[name][~tables[name][model].isin(("flat-ground model", "flat"))]
     tables["verification"] = tables["verification"].query("support == 'recess'")
-    facts = {**found.facts, "tendon_prestress": 0.5, "tendon_stiffness": 2.0}
-    changed = dataclasses.replace(found, tables=tables, facts=facts)
+    facts = {**validity.facts, "tendon_prestress": 0.5, "tendon_stiffness": 2.0}
+    changed = dataclasses.replace(validity, tables=tables, facts=facts)
     page = page_of(changed)
     document = page.markdown()
     assert "limit_requirement.tendon" in [each.key for each in changed.findings()]
@@ -80,9 +80,9 @@ def test_with_a_tendon_it_is_stated_and_nothing_stands_against_flat_ground(found
 
 
 def test_the_command_stores_what_its_pages_are_drawn_from(
-    found: Validity, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    validity: Validity, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(study, "measure_all", lambda *_, **__: dict(found.tables))
+    monkeypatch.setattr(study, "measure_all", lambda *_, **__: dict(validity.tables))
     done = CliRunner().invoke(app, ["validity", "--quick", "--out", str(tmp_path)])
     assert done.exit_code == 0
     stored = Validity.load(tmp_path)

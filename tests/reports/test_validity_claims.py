@@ -27,17 +27,17 @@ POINT = ["tan_alpha", "semidiagonal", "intensity"]
 
 
 @pytest.fixture(scope="module")
-def found() -> Validity:
+def validity() -> Validity:
     return Validity.load(PUBLISHED)
 
 
-def test_the_published_page_is_drawn_word_for_word(found: Validity) -> None:
+def test_the_published_page_is_drawn_word_for_word(validity: Validity) -> None:
     """It is the golden page of its kind: `python reports/published/remake.py --redraw` makes it anew."""
-    assert page_of(found).markdown() == (PUBLISHED / "validity.md").read_text(encoding="utf-8")
+    assert page_of(validity).markdown() == (PUBLISHED / "validity.md").read_text(encoding="utf-8")
 
 
-def test_captions_of_maps_say_of_how_many_records_a_cell_is(found: Validity) -> None:
-    peaks = found.tables["peaks"]
+def test_captions_of_maps_say_of_how_many_records_a_cell_is(validity: Validity) -> None:
+    peaks = validity.tables["peaks"]
     peaks = peaks[peaks["motion"] != "El Centro 1940"]
     fell = peaks[["flat", "recess", "copy"]].mul(np.arctan(peaks["tan_alpha"]), axis="index") >= 1.57
     moves = peaks["least_normal"].notna()
@@ -49,8 +49,8 @@ def test_captions_of_maps_say_of_how_many_records_a_cell_is(found: Validity) -> 
         "need-contact": ("normal_10", moves),
         "need-moment": ("moment_90", moves),
     }
-    table = cells(found.tables).set_index(POINT)
-    drawn = {picture.name: picture for picture in map_pictures(found.tables)}
+    table = cells(validity.tables).set_index(POINT)
+    drawn = {picture.name: picture for picture in map_pictures(validity.tables)}
     for name, (column, known) in shown.items():
         counts = known.groupby([peaks[axis] for axis in POINT]).sum()
         assert counts.max() == peaks.groupby(POINT).size().max() > counts.min()
@@ -69,18 +69,18 @@ def worded(picture: Picture) -> str:
     return sentence(picture.caption)
 
 
-def test_open_marks_are_explained_where_there_are_some(found: Validity) -> None:
-    table = found.tables["verification"]
+def test_open_marks_are_explained_where_there_are_some(validity: Validity) -> None:
+    table = validity.tables["verification"]
     for resolved in (True, False):
         other = table.assign(resolved=[resolved, *table["resolved"][1:]])
-        drawn = pictures(dataclasses.replace(found, tables={**found.tables, "verification": other}))
+        drawn = pictures(dataclasses.replace(validity, tables={**validity.tables, "verification": other}))
         (picture,) = (each for each in drawn if each.name == "verification")
         assert ("Open marks" in worded(picture)) is not resolved
 
 
-def test_the_guide_says_of_contact_and_of_clearance_what_the_tables_bear(found: Validity) -> None:
+def test_the_guide_says_of_contact_and_of_clearance_what_the_tables_bear(validity: Validity) -> None:
     guide = (PUBLISHED.parents[2] / "docs" / "guide" / "limits.md").read_text(encoding="utf-8")
-    table = found.tables["contact"]
+    table = validity.tables["contact"]
     failed = (table[["free_outcome", "outcome"]] != "stands").any(axis="columns")
     stiffer, stiff = (table[np.isclose(table["time_constant"], each)] for each in (2e-4, 2e-3))
     off = (stiff["peak"] / stiff["recess_peak"] - 1.0).abs().max()
@@ -90,7 +90,7 @@ def test_the_guide_says_of_contact_and_of_clearance_what_the_tables_bear(found: 
     (damping,) = set(ended["damping"])
     words = f"only {len(ended)} of {len(stiffer)} ended, all at a damping ratio of {damping:g}"
     assert f"with 0.2 ms {words}" in guide
-    table = contrasts(found.tables)
+    table = contrasts(validity.tables)
     ring = table[table["method"] == "ring"]
     assert np.isposinf(ring["ratio_95_high"]).all()
     assert f"in samples of {ring['count'].max()} records (no upper bound is known)" in guide

@@ -39,11 +39,11 @@ def test_leaning_on_a_wall_beyond_balance_counts_as_overturned():
         for share in (0.5, 1.3, 1.4)
     ]
     run = Run("mujoco", "ring", time_step=1e-3, ring_clearance=0.01, ring_inclination=0.5)
-    found = ensemble(cases, runs=[run], models=[], workers=1)
-    assert found.members["outcome"].tolist()[1:] == ["overturned", "overturned"]
-    assert (found.members["peak_tilt"] < 0.5 * math.pi / cylinder.alpha).all()
+    study = ensemble(cases, runs=[run], models=[], workers=1)
+    assert study.members["outcome"].tolist()[1:] == ["overturned", "overturned"]
+    assert (study.members["peak_tilt"] < 0.5 * math.pi / cylinder.alpha).all()
     swept = sweep(Suite(cases, [run]), workers=1).table
-    assert swept["outcome"].tolist() == found.members["outcome"].tolist()
+    assert swept["outcome"].tolist() == study.members["outcome"].tolist()
 
 
 def test_a_ring_is_held_against_the_recess_model(monkeypatch):
@@ -71,23 +71,23 @@ def test_failed_runs_are_counted_and_named_and_are_no_members(monkeypatch):
         return made_up(job, job.case.initial.tilt)
 
     monkeypatch.setattr(ENSEMBLE, "run_job", simulate)
-    found = ensemble(CASE, runs=[], copies=7, workers=1)
-    methods = found.methods.set_index("method")
+    study = ensemble(CASE, runs=[], copies=7, workers=1)
+    methods = study.methods.set_index("method")
     assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
     assert methods.loc["flat-ground model", "failed_members"] == "release #2"
-    assert len(found.members) == 14
+    assert len(study.members) == 14
     # of six members that do not differ; what failed has no part in the counts and quantiles of its method
     pairs = ["count", "compared", "ratio", "masked"]
-    assert found.contrasts.loc[0, pairs].tolist() == [6, 6, 1.0, "release #2"]
+    assert study.contrasts.loc[0, pairs].tolist() == [6, 6, 1.0, "release #2"]
     assert methods.loc["flat-ground model", ["runs", "uplifted", "overturned"]].tolist() == [7, 6, 0]
     assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
     # the last of four is how far it came before it failed: no peak
-    members = found.members[found.members["member"].str[-1].astype(int) < 5].reset_index(drop=True)
+    members = study.members[study.members["member"].str[-1].astype(int) < 5].reset_index(drop=True)
     members.loc[members["method"] == "recess model", "outcome"] = ["overturned"] * 2 + ["stands", "failed"]
     members.loc[members["member"] == "release #2", "outcome"] = "overturned"
     members.loc[members["member"].str[-1].astype(int) < 3, "peak_tilt"] = 8.0
     for labels in (["recess model", "flat-ground model"], ["flat-ground model", "recess model"]):
-        again = ensemble_of(members, {**found.facts, "methods": dict.fromkeys(labels, "")})
+        again = ensemble_of(members, {**study.facts, "methods": dict.fromkeys(labels, "")})
         assert again.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #4"]
         row = again.methods.set_index("method").loc["recess model"]
         assert row[["runs", "uplifted", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
@@ -101,41 +101,41 @@ def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
         "flat-ground model": made_up(Job(case=cases[0], run=RECESS), 0.5 * math.pi, "overturned"),
     }
     monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: runs[job.label])
-    found = ensemble(cases, runs=[], workers=1)
+    study = ensemble(cases, runs=[], workers=1)
     for method, run in runs.items():
-        rows = found.members[found.members["method"] == method]
+        rows = study.members[study.members["method"] == method]
         assert rows["outcome"].tolist() == [run.outcome] * 6
         assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 6, abs=ROUNDING)
-    assert found.methods["overturned"].tolist() == [0, 6]
-    assert found.methods["peak_median"].tolist() == [pytest.approx(1.5, abs=ROUNDING), math.inf]
+    assert study.methods["overturned"].tolist() == [0, 6]
+    assert study.methods["peak_median"].tolist() == [pytest.approx(1.5, abs=ROUNDING), math.inf]
 
 
 def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
     monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: made_up(job, job.case.initial.tilt))
-    found = ensemble(CASE, runs=[], copies=8, workers=1)
-    shuffled = found.members.sample(frac=1.0, random_state=1)
-    assert ensemble_of(shuffled, found.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
+    study = ensemble(CASE, runs=[], copies=8, workers=1)
+    shuffled = study.members.sample(frac=1.0, random_state=1)
+    assert ensemble_of(shuffled, study.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
     with pytest.raises(ValueError, match="one run by each method"):
-        ensemble_of(pd.concat([found.members, found.members[:1]]), found.facts)
+        ensemble_of(pd.concat([study.members, study.members[:1]]), study.facts)
 
 
 def test_bounds_hold_whatever_the_runs_that_failed_would_have_done(monkeypatch):
     monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: made_up(job, job.case.initial.tilt))
-    found = ensemble(CASE, runs=[], copies=9, perturbation=0.05, workers=1)
-    whole = found.methods.set_index("method")
+    study = ensemble(CASE, runs=[], copies=9, perturbation=0.05, workers=1)
+    whole = study.methods.set_index("method")
     assert (whole["peak_median_least"] == whole["peak_median"]).all()
-    failed = found.members.copy()
+    failed = study.members.copy()
     lost = failed.index[failed["method"] == "flat-ground model"][[1, 4]]
     failed.loc[lost, "outcome"] = "failed"
-    bounds = ensemble_of(failed, found.facts)
+    bounds = ensemble_of(failed, study.facts)
     median, ratio = bounds.methods.set_index("method").loc["flat-ground model"], bounds.contrasts.loc[0]
     assert ratio["ratio_least"] <= ratio["ratio"] <= ratio["ratio_most"]
     told = []
     for fates in itertools.product(("overturned", "stands"), repeat=2):
-        known = found.members.copy()
+        known = study.members.copy()
         known.loc[lost, "outcome"] = fates
         known.loc[lost, "peak_tilt"] = [math.pi if fate == "overturned" else 1e-9 for fate in fates]
-        again = ensemble_of(known, found.facts)
+        again = ensemble_of(known, study.facts)
         told.append(
             (
                 again.methods.set_index("method").loc["flat-ground model", "peak_median"],

@@ -58,11 +58,11 @@ GRID = np.linspace(1.0, 4.0, 28)
 @pytest.mark.parametrize("centre", [1.3152, 1.5037, 2.7182])
 def test_an_overturning_window_narrower_than_the_grid_is_found(centre):
     window = Window(centre, 0.015, 0.3)
-    found = search(window, 1.0, GRID)
-    assert abs(found - centre) <= 0.0075
+    lowest = search(window, 1.0, GRID)
+    assert abs(lowest - centre) <= 0.0075
     run = np.array(window.run)
-    assert not overturned(window(run[run < found])).any()
-    assert found - run[run < found].max() <= STEP * (1.0 + SAME)
+    assert not overturned(window(run[run < lowest])).any()
+    assert lowest - run[run < lowest].max() <= STEP * (1.0 + SAME)
 
 
 def test_a_coarse_grid_is_filled_and_nothing_beyond_it_is_run():
@@ -94,11 +94,11 @@ def test_searches_side_by_side_find_what_each_finds_alone():
 
     known = np.where(edges[:, None] <= GRID, FALL, 0.0)
     options = {"start": 1.0, "step": STEP, "alpha": ALPHA}
-    found = run_searches([search_lowest(GRID, each, **options) for each in known], peaks, workers=1)
+    results = run_searches([search_lowest(GRID, each, **options) for each in known], peaks, workers=1)
     alone = [search(lambda levels, e=e: np.where(levels >= e, FALL, 0.0), 1.0, GRID) for e in edges]
-    assert np.array_equal(found, alone, equal_nan=True)
-    assert all(0.0 <= low - edge <= STEP for low, edge in zip(found[:2], edges[:2], strict=True))
-    assert math.isnan(found[2])
+    assert np.array_equal(results, alone, equal_nan=True)
+    assert all(0.0 <= low - edge <= STEP for low, edge in zip(results[:2], edges[:2], strict=True))
+    assert math.isnan(results[2])
     for start, grid, known in ((1.0, [1.2345, 3.0], 1.2345), (2.0, [1.0, 2.0], 2.0)):
         # a search ends at a known overturning
         assert search(lambda levels: np.where(levels >= 1.2345, FALL, 0.0), start, np.array(grid)) == known
@@ -157,7 +157,7 @@ def test_probes_go_down_until_none_overturns():
 @pytest.mark.parametrize(("width", "chance"), [(2.0 / 500, 1.0), (0.5 / 500, 0.5), (0.1 / 500, 0.1)])
 def test_narrow_gaps_are_found_at_the_stated_rate(width: float, chance: float):
     """The probes lie one in each of 500 parts: a gap within one is hit as often as it is wide."""
-    trials, found = 200, 0
+    trials, hits = 200, 0
     for seed in range(trials):
         centre = 1.0 + np.random.default_rng(seed).uniform(0.1, 0.9)
 
@@ -167,9 +167,9 @@ def test_narrow_gaps_are_found_at_the_stated_rate(width: float, chance: float):
         low, missed = run_searches([probe_below(1.0, 3.0, 2.0, probes=500, seed=(seed,))], gap, workers=1)[0]
         assert (missed > 0) == (low < 2.0)
         assert low == 2.0 or abs(low - centre) < 0.5 * width
-        found += low < 2.0
+        hits += low < 2.0
     # four standard deviations of a share of so many
-    assert found / trials == pytest.approx(
+    assert hits / trials == pytest.approx(
         chance, abs=4.0 * math.sqrt(chance * (1.0 - chance) / trials) + SAME
     )
 
@@ -181,16 +181,16 @@ def test_a_search_finds_windows_that_a_grid_does_not_see():
     # at this size the lowest of a grid of 100 intensities is 1.667
     grid = np.linspace(1.0, 12.0, 100)[:8]
     known = lowest_on_grid(grid, peaks(grid)[None])[0]
-    found = search(peaks, 1.0, grid)
-    assert overturned(peaks(np.array([found]))).all()
-    assert found < known - 0.05
+    lowest = search(peaks, 1.0, grid)
+    assert overturned(peaks(np.array([lowest]))).all()
+    assert lowest < known - 0.05
 
 
 def test_the_lowest_of_a_grid_is_the_first_that_overturns():
     tilts = np.array([[0.1, FALL, 0.1, FALL], [0.1, 0.2, 0.3, 0.4], [FALL, math.nan, 0.1, 0.1]])
-    found = lowest_on_grid(np.array([1.0, 2.0, 3.0, 4.0]), tilts)
-    assert found[[0, 2]].tolist() == [2.0, 1.0]
-    assert math.isnan(found[1])
+    lowest = lowest_on_grid(np.array([1.0, 2.0, 3.0, 4.0]), tilts)
+    assert lowest[[0, 2]].tolist() == [2.0, 1.0]
+    assert math.isnan(lowest[1])
 
 
 HAIR = 1e-6  # relative: either side of the exact threshold, far above rounding

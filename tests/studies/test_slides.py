@@ -14,26 +14,26 @@ CASE = rw.Case(CASK, rw.el_centro_1940().scaled(2.5), duration=8.0, friction=0.3
 
 
 def test_advice_on_a_slide_says_how_far_and_uses_up_a_gap() -> None:
-    found = rw.advise(CASE, copies=20, gap=0.1)
-    first, slide, *others = found.findings().of("mode")
+    advice = rw.advise(CASE, copies=20, gap=0.1)
+    first, slide, *others = advice.findings().of("mode")
     trace = reduced.simulate(CASE, support="flat")
-    assert (found.facts["support"], first.key, found.grades) == ("flat", "mode.slides", {})
+    assert (advice.facts["support"], first.key, advice.grades) == ("flat", "mode.slides", {})
     peak, low, high = slide.values["displacement"]
     assert peak == trace.peak_displacement
     assert low < peak < high
     assert slide.values["displacement_end"][0] == trace.residual_displacement
     shares = [each.values["share"][0] for each in others if each.key == "mode.gap"]
-    rows = found.tables["slides"].groupby("group", sort=False)["displacement"]
+    rows = advice.tables["slides"].groupby("group", sort=False)["displacement"]
     assert shares == [(moved > 0.1).mean() for _, moved in rows]
-    assert not len(found.groups)
-    assert not found.findings().of("use")  # which says nothing of the flat-ground model of rolling
-    assert found.headline()["residual displacement as given [m]"] == trace.residual_displacement
+    assert not len(advice.groups)
+    assert not advice.findings().of("use")  # which says nothing of the flat-ground model of rolling
+    assert advice.headline()["residual displacement as given [m]"] == trace.residual_displacement
 
 
 @pytest.mark.slow
 def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
-    found = rw.advise(CASE, copies=20, support="recess")
-    first, walls = found.findings().of("mode")
+    advice = rw.advise(CASE, copies=20, support="recess")
+    first, walls = advice.findings().of("mode")
     assert (first.key, walls.key) == ("mode.rocks", "mode.walls")
     assert walls.values["force"] == pytest.approx(0.5 - 0.3)  # until it uplifts
     with pytest.raises(ValueError, match="gap"):
@@ -66,22 +66,23 @@ def test_spectrum_says_the_mode_first_and_refuses_what_only_slides() -> None:
 def test_fragility_counts_the_slides_that_use_up_a_gap() -> None:
     motions = rw.synthetic_motions(6, peak=3.0, seed=1)
     options = {"friction": 0.2, "gap": 0.05, "measure": "pga", "resamples": 20, "workers": 1}
-    found = rw.fragility(CASK, motions, methods=["recess", "flat"], levels=[0.3, 0.6], **options)
+    fragility = rw.fragility(CASK, motions, methods=["recess", "flat"], levels=[0.3, 0.6], **options)
     alone = rw.fragility(CASK, motions, levels=[0.3, 0.6], limits=["slides"], **options)
     assert {*alone.runs["method"]} == {"flat-ground model"}
-    flat = found.runs[found.runs["method"] == "flat-ground model"].set_index(["motion", "step"])
+    flat = fragility.runs[fragility.runs["method"] == "flat-ground model"].set_index(["motion", "step"])
     assert (flat["peak_tilt"] == 0.0).all()
     for motion in motions:
-        for step, row in found.points[found.points["motion"] == motion.name].set_index("step").iterrows():
+        of_motion = fragility.points["motion"] == motion.name
+        for step, row in fragility.points[of_motion].set_index("step").iterrows():
             moved = reduced.peak_displacements([0.2], motion, [row["scale"]])[0, 0]
             assert flat.loc[(motion.name, step), "slides"] == float(moved > 0.05)
-    counts = found.counts[
-        (found.counts["limit"] == "slides") & (found.counts["method"] == "flat-ground model")
+    counts = fragility.counts[
+        (fragility.counts["limit"] == "slides") & (fragility.counts["method"] == "flat-ground model")
     ]
     assert list(counts["k"]) == [int(flat["slides"].xs(step, level="step").sum()) for step in (0, 1)]
     assert 0 < counts["k"].sum() < 12
     curve = rw.HazardCurve([0.1, 0.3, 1.0], [1e-2, 1e-3, 1e-4], measure="pga")
-    rows = found.risk(curve, limit="slides").set_index("method")
+    rows = fragility.risk(curve, limit="slides").set_index("method")
     assert rows.loc["flat-ground model", "annual_frequency"] > 0.0
     with pytest.raises(ValueError, match="gap"):
         rw.fragility(CASK, motions, limits=["slides"])

@@ -96,13 +96,13 @@ def test_below_a_grid_that_begins_high_the_lowest_is_found():
 @pytest.mark.parametrize("terms", [{"support": "flat"}, {"slab_mass_ratio": 2.0}])
 def test_every_cell_and_its_rerun_carry_the_terms_of_the_plan(spectrum, terms):
     options = {"semidiagonals": [4.0], "intensities": INTENSITIES[1:4:2], "search_step": 2.0, "probes": 0}
-    found = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options, **terms))
+    maps = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options, **terms))
     frame = WobblingFrame(Cylinder(semidiagonal=4.0, tan_alpha=0.1), terms.get("slab_mass_ratio", 0.0))
-    case = Case(frame, EL_CENTRO.scaled(found.scales[0]))
+    case = Case(frame, EL_CENTRO.scaled(maps.scales[0]))
     single = reduced.simulate(case, support=terms.get("support", "recess"), rtol=1e-8)
-    assert found.peak_tilt[SPATIAL][0, 0] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
-    assert found.peak_tilt[SPATIAL][0, 0] != spectrum.peak_tilt[SPATIAL][1, 1]
-    assert check_cells(found)["agrees"].all()
+    assert maps.peak_tilt[SPATIAL][0, 0] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
+    assert maps.peak_tilt[SPATIAL][0, 0] != spectrum.peak_tilt[SPATIAL][1, 1]
+    assert check_cells(maps)["agrees"].all()
 
 
 def test_a_still_record_cannot_be_scaled():
@@ -201,11 +201,11 @@ def test_a_resumed_spectrum_has_the_same_bits_with_any_number_of_threads(tmp_pat
         tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), resume=tmp_path, progress=interrupt)
     ran = []
     monkeypatch.setattr(maps, "run_part", lambda part, **more: ran.append(part) or run_part(part, **more))
-    found = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), resume=tmp_path, progress=told.append)
+    resumed = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), resume=tmp_path, progress=told.append)
     assert len(ran) == told[-1].total - 2
     assert 0.0 < told[-3].left < math.inf
     for name in SERIES:
         for part in ("peak_tilt", "lowest", "below"):
-            np.testing.assert_array_equal(getattr(found, part)[name], getattr(whole, part)[name])
+            np.testing.assert_array_equal(getattr(resumed, part)[name], getattr(whole, part)[name])
     tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), resume=tmp_path)
     assert len(ran) == told[-1].total - 2

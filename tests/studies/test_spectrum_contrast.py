@@ -131,6 +131,6 @@ def test_bands_have_a_round_width_and_hold_all_sizes(smallest, largest, width):
 @pytest.mark.slow
 def test_a_spectrum_shows_itself(tmp_path):
     maps = made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3)
-    found = spectrum_of(maps)
-    shows_itself(found, "cells 18", "share that overturns in 3D ")
-    loads_as_it_was(found, tmp_path)
+    spectrum = spectrum_of(maps)
+    shows_itself(spectrum, "cells 18", "share that overturns in 3D ")
+    loads_as_it_was(spectrum, tmp_path)

@@ -26,9 +26,9 @@ MOTIONS = synthetic_motions(4, peak=1.0, seed=3)
 @pytest.mark.parametrize("slab", [0.0, 1.0])
 def test_a_fragility_runs_the_tendon_and_leaves_out_flat_ground(slab: float) -> None:
     body = rw.WobblingFrame(PIER, slab) if slab else PIER
-    found = rw.fragility({"it": body}, MOTIONS, levels=[3.0, 9.0], resamples=50, workers=1, **STEEL)
-    assert "flat-ground model" not in found.facts["methods"]
-    runs = found.runs[found.runs["method"] == "recess model"].set_index(["motion", "step"])
+    fragility = rw.fragility({"it": body}, MOTIONS, levels=[3.0, 9.0], resamples=50, workers=1, **STEEL)
+    assert "flat-ground model" not in fragility.facts["methods"]
+    runs = fragility.runs[fragility.runs["method"] == "recess model"].set_index(["motion", "step"])
     for motion in MOTIONS:
         scale = 9.0 * 9.81 * PIER.tan_alpha / motion.peak
         own = reduced.simulate(rw.Case(body, motion.scaled(scale), tendon=TENDON), rtol=1e-7)
@@ -51,8 +51,8 @@ def test_levels_begin_above_the_raised_uplift_and_end_where_most_overturn() -> N
 def test_a_spectrum_searches_from_the_raised_uplift() -> None:
     options = {"semidiagonals": [3.0], "intensities": [2.0, 6.0], "search_step": 0.2, "probes": 20}
     motion = rw.el_centro_1940()
-    found, plain = (rw.spectrum(0.2, motion, workers=1, **options, **steel) for steel in (STEEL, {}))
-    lowest, other = (each.tables["lowest"].set_index("series")["intensity"]["3d"] for each in (found, plain))
+    spectrum, plain = (rw.spectrum(0.2, motion, workers=1, **options, **steel) for steel in (STEEL, {}))
+    lowest, other = (one.tables["lowest"].set_index("series")["intensity"]["3d"] for one in (spectrum, plain))
     assert lowest > other
     pier = rw.Cylinder(semidiagonal=3.0, tan_alpha=0.2)
     peak = float(np.hypot(*motion.acceleration[:, :2].T).max())

@@ -46,10 +46,10 @@ class Multiples(Study[int, list[int]]):
 @pytest.fixture
 def second_dies(monkeypatch: pytest.MonkeyPatch) -> None:
     def losing(function, tasks, **options):
-        found = run_tasks(function, tasks, **options)
+        results = run_tasks(function, tasks, **options)
         return [
             FailedTask("out of memory") if task == 2 else each
-            for task, each in zip(tasks, found, strict=True)
+            for task, each in zip(tasks, results, strict=True)
         ]
 
     monkeypatch.setattr(study, "run_tasks", losing)

@@ -127,19 +127,19 @@ def test_cases_with_engines_and_models():
 
 
 def test_manifest_and_summary_say_what_was_swept(tmp_path):
-    found = sweep(grid(), out=tmp_path, workers=1)
+    swept = sweep(grid(), out=tmp_path, workers=1)
     made = read_results(tmp_path, KIND).manifest
-    assert made.headline == {"runs": 40, **found.table["outcome"].value_counts().to_dict()}
+    assert made.headline == {"runs": 40, **swept.table["outcome"].value_counts().to_dict()}
     assert (made.about["semidiagonals"], made.about["runs"]) == (SIZES, 40)
-    assert found.facts == made.about
+    assert swept.facts == made.about
     motions = read_results(tmp_path, KIND).table("motions")
     assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
     assert motions["acceleration_z"].isna().all()
-    summary = found.summary()
+    summary = swept.summary()
     assert list(summary["tan_alpha"]) == [0.1, 0.2]
-    for (_, row), (_, own) in zip(summary.iterrows(), found.table.groupby("tan_alpha"), strict=True):
-        counts = own["outcome"].value_counts().reindex(found.outcomes, fill_value=0)
-        assert row[found.outcomes].to_dict() == counts.to_dict()
+    for (_, row), (_, own) in zip(summary.iterrows(), swept.table.groupby("tan_alpha"), strict=True):
+        counts = own["outcome"].value_counts().reindex(swept.outcomes, fill_value=0)
+        assert row[swept.outcomes].to_dict() == counts.to_dict()
         fell = own["outcome"] == "overturned"
         # an overturned run ranks as infinite
         assert row["median"] == own["peak_tilt_over_alpha"].where(~fell, math.inf).median()

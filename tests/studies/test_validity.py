@@ -172,11 +172,11 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
         for i, peak in enumerate(values)
     ]  # fmt: skip
     members = {**tables, "records": pd.DataFrame(rows)}
-    found = contrasts(members).set_index(["method", "against"])
-    assert found.loc[("recess", RECESS.model), "verdict"] == verdict
+    table = contrasts(members).set_index(["method", "against"])
+    assert table.loc[("recess", RECESS.model), "verdict"] == verdict
     # a ring is another system, and is compared with itself for how far it has converged
-    assert found.loc[("ring", RECESS.model), "ratio"] == pytest.approx(2.0)
-    assert found.loc[(HALVED, "ring"), "ratio"] == pytest.approx(0.5)
+    assert table.loc[("ring", RECESS.model), "ratio"] == pytest.approx(2.0)
+    assert table.loc[(HALVED, "ring"), "ratio"] == pytest.approx(0.5)
     keys = said(members)
     (model,) = {f"limit_model.{each}" for each in ("established", "contradicted", "undecided")} & set(keys)
     assert model == f"limit_model.{key}"
@@ -217,13 +217,13 @@ def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> 
     table = pd.DataFrame(rows).assign(
         motion=[f"record {n}" for n in range(8)], tan_alpha=0.2, semidiagonal=6.0, intensity=2.0, **nothing
     )
-    found = cells({**tables, "peaks": table}).iloc[0]
-    assert (found["members"], found["rocked"]) == (8, 8)
-    assert (found["overturned"], found["flat_overturned"], found["copy_overturned"]) == (0.25, 0.5, 0.0)
+    cell = cells({**tables, "peaks": table}).iloc[0]
+    assert (cell["members"], cell["rocked"]) == (8, 8)
+    assert (cell["overturned"], cell["flat_overturned"], cell["copy_overturned"]) == (0.25, 0.5, 0.0)
     # halved, halved, and one that overturns on flat ground alone; twice overturned there is no ratio
-    assert found["flat_ratio"] == pytest.approx(0.5)
-    assert found["flat_90"] == math.inf
-    assert found["copy_ratio"] == pytest.approx(1.0)
+    assert cell["flat_ratio"] == pytest.approx(0.5)
+    assert cell["flat_90"] == math.inf
+    assert cell["copy_ratio"] == pytest.approx(1.0)
 
 
 def test_needs_are_by_slenderness_and_intensity_and_of_enough_motions(tables: Tables) -> None:
@@ -245,23 +245,23 @@ def test_needs_are_by_slenderness_and_intensity_and_of_enough_motions(tables: Ta
             cell(0.4, 8.0, 2.0, 0.3, FEWEST),
         ]
     )
-    found = needs({**tables, "peaks": peaks}).set_index(["tan_alpha", "intensity"])
-    assert list(found.index) == [(0.1, 2.0), (0.4, 2.0)]
+    requirements = needs({**tables, "peaks": peaks}).set_index(["tan_alpha", "intensity"])
+    assert list(requirements.index) == [(0.1, 2.0), (0.4, 2.0)]
     # nine in ten of the size that needs most
-    assert found["moment"].to_list() == pytest.approx([0.9 * 0.06, 0.9 * 0.3])
-    assert found["friction"].to_list() == pytest.approx([1.8 * 0.06, 1.8 * 0.3])
-    assert found[["sizes", "motions"]].to_numpy().tolist() == [[2, 20], [1, 10]]
+    assert requirements["moment"].to_list() == pytest.approx([0.9 * 0.06, 0.9 * 0.3])
+    assert requirements["friction"].to_list() == pytest.approx([1.8 * 0.06, 1.8 * 0.3])
+    assert requirements[["sizes", "motions"]].to_numpy().tolist() == [[2, 20], [1, 10]]
 
 
 def test_the_vertical_component_counts_what_it_alone_overturns() -> None:
     fell = 0.5 * math.pi / math.atan(0.2)
     recess, other = [0.5] * 8 + [0.5, fell, fell], [0.55] * 8 + [fell, 0.5, fell]
     table = pd.DataFrame({"tan_alpha": 0.2, "recess": recess, "vertical": other, "copy": recess})
-    found = vertical({"peaks": table})
-    assert found["overturned"].to_dict() == {"vertical": 2, "copy": 2, "recess": 2}
-    row = found.loc["vertical"]
+    changed = vertical({"peaks": table})
+    assert changed["overturned"].to_dict() == {"vertical": 2, "copy": 2, "recess": 2}
+    row = changed.loc["vertical"]
     assert (row["cells"], row["compared"], row["other"]) == (11, 10, 2)  # twice overturned there is no ratio
-    assert (row["apart"], found.loc["copy", "apart"]) == (10, 0)  # each changes by a tenth, or falls
+    assert (row["apart"], changed.loc["copy", "apart"]) == (10, 0)  # each changes by a tenth, or falls
     assert row["least"] == row["largest"] == pytest.approx(1.1)
 
 
@@ -272,8 +272,8 @@ def test_a_friction_that_slips_at_one_release_does_not_hold(tables: Tables) -> N
     # under a slab it slips at the top, which an engine does not count: the tilt errs, or energy ends the run
     signs = {"tilt_rms": [0.1, 0.1, 0.0]}, {"outcome": ["failed", "failed", "stands"]}
     for table in (slip, *(slip.iloc[:3].assign(**sign) for sign in signs)):
-        found = said({**tables, "slip": table})["limit_force.slip"]
-        assert (found["share"], found["bound"]) == (0.9, 1.0)
+        values = said({**tables, "slip": table})["limit_force.slip"]
+        assert (values["share"], values["bound"]) == (0.9, 1.0)
 
 
 def test_soft_contact_is_identified_by_damping_and_failures_counted(tables: Tables) -> None:
@@ -293,9 +293,9 @@ def test_soft_contact_is_identified_by_damping_and_failures_counted(tables: Tabl
     by_damping = damping(changed).set_index("damping")
     assert by_damping["largest"].to_dict() == pytest.approx({0.1: 1.02, 0.3: 1.6, 1.0: 1.0})
     assert by_damping["failed"].to_dict() == {0.1: 0, 0.3: 0, 1.0: 2}
-    found = said(changed)["limit_requirement.stiffness"]
-    assert (found["bound"], found["share"], found["ratio"]) == (0.002, 0.0, 0.001)
-    assert (found["runs"], found["runs_ended"], found["given_least"]) == (2, 1, 1.0)
+    values = said(changed)["limit_requirement.stiffness"]
+    assert (values["bound"], values["share"], values["ratio"]) == (0.002, 0.0, 0.001)
+    assert (values["runs"], values["runs_ended"], values["given_least"]) == (2, 1, 1.0)
 
 
 def test_measures_of_limits() -> None:
@@ -312,22 +312,22 @@ def test_measures_of_limits() -> None:
 def test_lost_contact_is_said_from_where_it_is_lost(tables: Tables) -> None:
     peaks = tables["peaks"]
     lost = peaks["least_normal"].mask(peaks["least_normal"].notna() & (peaks["tan_alpha"] > 0.3), -0.1)
-    found = said({**tables, "peaks": peaks.assign(least_normal=lost)})
-    values = found["limit_requirement.contact_lost"]
-    assert "limit_requirement.contact" not in found
+    stated = said({**tables, "peaks": peaks.assign(least_normal=lost)})
+    values = stated["limit_requirement.contact_lost"]
+    assert "limit_requirement.contact" not in stated
     assert (values["runs_lost"], values["runs"]) == ((lost < 0.0).sum(), lost.notna().sum())
     assert (values["ratio"], values["factor"]) == (0.4, peaks[lost < 0.0]["intensity"].min())
     assert values["bound"] == lost[lost > 0.0].min()
 
 
 def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory, tmp_path: Path) -> None:
-    found = tiny_validity(tmp_path_factory.getbasetemp())
-    shows_itself(found, "motions ", "peaks 24 rows")
-    loads_as_it_was(found, tmp_path)
+    validity = tiny_validity(tmp_path_factory.getbasetemp())
+    shows_itself(validity, "motions ", "peaks 24 rows")
+    loads_as_it_was(validity, tmp_path)
     # as where the records are not installed
-    synthetic = replace(found, facts={**found.facts, "records": source_of("synthetic 1")})
+    synthetic = replace(validity, facts={**validity.facts, "records": source_of("synthetic 1")})
     shows_itself(synthetic, "motions synthetic records", "peaks 24 rows")
-    assert found.plot("slip").axes
+    assert validity.plot("slip").axes
 
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
@@ -382,25 +382,25 @@ TIED = Structure(tendon_prestress=0.5, tendon_stiffness=2.0)
 @pytest.mark.parametrize("structure", [SLAB, TIED])
 def test_every_part_uses_the_slab_or_the_tendon(tables: Tables, structure: Structure, tmp_path: Path) -> None:
     extent = replace(TINY, sizes=(4.0,)).of(structure)
-    found = validity_of(measure_all(extent, tmp_path, workers=1), extent)
+    validity = validity_of(measure_all(extent, tmp_path, workers=1), extent)
     slab = structure == SLAB
-    assert set(found.tables) == {*PARTS, "limits"} - ({"rings"} if slab else set())
+    assert set(validity.tables) == {*PARTS, "limits"} - ({"rings"} if slab else set())
     stated = {"slab_mass_ratio": 1.0} if slab else {"tendon_prestress": 0.5, "tendon_stiffness": 2.0}
-    assert all((table[[*stated]] == [*stated.values()]).all(axis=None) for table in found.tables.values())
-    for name in PARTS.keys() & found.tables.keys():
+    assert all((table[[*stated]] == [*stated.values()]).all(axis=None) for table in validity.tables.values())
+    for name in PARTS.keys() & validity.tables.keys():
         # besides the release, which is at alpha/2
         known, alone = (
-            set(each[name][OF_THE_BODY[name]].dropna()) - {0.5} for each in (found.tables, tables)
+            set(each[name][OF_THE_BODY[name]].dropna()) - {0.5} for each in (validity.tables, tables)
         )
         assert known, name
         assert not known & alone, name
-    values = said(found.tables, found.structure)
+    values = said(validity.tables, validity.structure)
     # the engine has them, too, and one end of its column slips where the model says
     release = values["limit_release.decided" if slab else "limit_release.confirmed"]
     assert release["runs"] == release["runs_all"] == (2 if slab else 1)
     assert (values["limit_force.slip"]["share"], values["limit_force.slip"]["bound"]) == (0.9, 1.05)
-    assert traces(found.tables).query("support == 'recess'")["worst"].item() < ALIKE
-    methods, plain = set(found.records["method"]), set(tables["records"]["method"])
+    assert traces(validity.tables).query("support == 'recess'")["worst"].item() < ALIKE
+    methods, plain = set(validity.records["method"]), set(tables["records"]["method"])
     if slab:
         assert methods == plain - {"ring", HALVED}
         assert "limit_scope.slab" in values
@@ -409,17 +409,17 @@ def test_every_part_uses_the_slab_or_the_tendon(tables: Tables, structure: Struc
         frame = WobblingFrame(Cylinder(semidiagonal=REFERENCE_SIZE, tan_alpha=0.2), 1.0, columns=1)
         tilt = 0.5 * frame.alpha
         initial = InitialState(tilt, rolling_rate=0.1 * steady_wobble_rate(frame, tilt))
-        assert found.free_response["period"].iloc[0] == free_response(frame, initial).period
+        assert validity.free_response["period"].iloc[0] == free_response(frame, initial).period
     else:
         assert methods == plain - {"flat-ground model"}
-        assert found.peaks["flat"].isna().all()
-        assert set(found.following["support"]) == {"recess"}
+        assert validity.peaks["flat"].isna().all()
+        assert set(validity.following["support"]) == {"recess"}
         # what is asked of the tendon is its tension at the peak tilt
-        stands = found.peaks.dropna(subset="tension").iloc[0]
+        stands = validity.peaks.dropna(subset="tension").iloc[0]
         cylinder = Cylinder(semidiagonal=stands["semidiagonal"], tan_alpha=stands["tan_alpha"])
         tension = Tendon(prestress=0.5, stiffness=2.0).tension(cylinder, stands["recess"] * cylinder.alpha)
         assert stands["tension"] == pytest.approx(tension, rel=1e-12)
-        assert values["limit_requirement.tendon"]["ratio"] == found.peaks["tension"].max()
+        assert values["limit_requirement.tendon"]["ratio"] == validity.peaks["tension"].max()
 
 
 @pytest.mark.parametrize(("prestress", "share"), [(0.5, 0.0), (2.0, 0.0), (0.5, 0.4)])
@@ -455,8 +455,8 @@ def test_shaking_is_as_far_beyond_uplift_as_without_a_tendon() -> None:
 
 @pytest.mark.checkout
 def test_findings_count_what_the_published_tables_hold() -> None:
-    found = Validity.load(PUBLISHED)
-    values, records, rings = said(found.tables), found.records, found.rings.query("support == 'ring'")
+    loaded = Validity.load(PUBLISHED)
+    values, records, rings = said(loaded.tables), loaded.records, loaded.rings.query("support == 'ring'")
     standing = records.query("method == 'ring' and outcome == 'stands'")["peak"]
     beyond = values["limit_records.beyond_alpha"]
     counts = (standing >= 1.0).sum(), len(standing), standing.max()
@@ -470,7 +470,7 @@ def test_findings_count_what_the_published_tables_hold() -> None:
     ratio = shaken["peak"] / shaken["recess_peak"]
     worst = ratio[pd.concat([ratio, 1.0 / ratio], axis=1).max(axis=1).idxmax()]
     assert values["limit_ring.worst"]["ratio"] == worst
-    table = found.verification
+    table = loaded.verification
     turns = table.groupby(["tan_alpha", "release", "spin"])["turn"]
     error = (table["engine_turn"] - table["turn"]).abs() / (turns.transform("max") - turns.transform("min"))
     unsure, decided = int((error >= 0.5).sum()), values["limit_release.decided"]

@@ -144,10 +144,10 @@ def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
     if digits.isdigit() and name in ("turn", "period", "maximum"):  # of the first so many tilt maxima
         level = run.get("lean_level", 0.0) * run["alpha"]
         counted = (one for one in maxima(motion) if one[1] > level)
-        found = [one for _, one in zip(range(int(digits)), counted, strict=False)]
-        if len(found) < int(digits):
+        first = [one for _, one in zip(range(int(digits)), counted, strict=False)]
+        if len(first) < int(digits):
             return math.inf
-        time, tilt, azimuth = found[-1]
+        time, tilt, azimuth = first[-1]
         if name == "turn":  # samples do not tell revolutions apart: of all, the nearest to the reference
             off = azimuth - run["start"]["azimuth"] - int(digits) * wanted
             return wanted + (math.nan if math.isnan(off) else math.remainder(off, 2.0 * math.pi)) / int(
@@ -210,19 +210,19 @@ class Case:
         for one in self.accept["criteria"]:
             runs = [name for name in one.get("runs", self.runs) if name in motions]
             if one["kind"] == "trace":
-                found = {name: self.difference(one, name, motions[name]) for name in runs}
+                errors = {name: self.difference(one, name, motions[name]) for name in runs}
             else:
                 wanted = {name: self.wanted[one["name"], name] for name in runs}
                 got = {n: measured(one["name"], motions[n], self.runs[n], wanted[n]) for n in runs}
                 relative = one["unit"] == "relative"
-                found = {n: abs(got[n] - wanted[n]) / (abs(wanted[n]) if relative else 1.0) for n in runs}
+                errors = {n: abs(got[n] - wanted[n]) / (abs(wanted[n]) if relative else 1.0) for n in runs}
                 if one["kind"] == "distribution" and runs:
                     both = [*wanted.values(), *got.values()]
                     below = [np.searchsorted(np.sort([*v.values()]), both, "right") for v in (wanted, got)]
-                    found = {"all": float(np.max(np.abs(below[0] - below[1]))) / len(runs)}
-            known = bool(found) and not any(math.isnan(error) for error in found.values())
-            worst = max(found, key=lambda name: found[name]) if known else ""
-            error, bounds = found.get(worst, 0.0), tuple(one[level] for level in LEVELS)
+                    errors = {"all": float(np.max(np.abs(below[0] - below[1]))) / len(runs)}
+            known = bool(errors) and not any(math.isnan(error) for error in errors.values())
+            worst = max(errors, key=lambda name: errors[name]) if known else ""
+            error, bounds = errors.get(worst, 0.0), tuple(one[level] for level in LEVELS)
             outcomes.append(Outcome(one["name"], one["unit"], error, worst, bounds))
         return tuple(outcomes)
 
@@ -282,12 +282,12 @@ class Case:
 
     def candidates(self, tables: Mapping[str, Table], names: Sequence[str]) -> Iterator[tuple[Change, ...]]:
         """Yield what explains the difference of some runs, then what may explain that of all."""
-        found = [one for name in names for one in self.explanations(name, tables[name].values)]
-        alone = [one.mistakes[0] for one in found if len(one.mistakes) == 1]
+        mistakes = [one for name in names for one in self.explanations(name, tables[name].values)]
+        alone = [one.mistakes[0] for one in mistakes if len(one.mistakes) == 1]
         rates = [mistake.value for mistake in alone if mistake.code == "time_scale"]
         if rates:  # a spin that does not go with the size changes that of each run a little
             yield (in_time_scale(sum(rates) / len(rates)),)
-        yield from (one.changes for one in found)
+        yield from (one.changes for one in mistakes)
         # of peaks alone nothing but units can be told
         yield from ((change,) for change in readings(tables[names[0]].values))
 
@@ -300,8 +300,8 @@ class Case:
                 name: correct(table.values, partial(read_motion, self.runs[name]), changes)
                 for name, table in tables.items()
             }
-            found = {name: motion for name, motion in runs.items() if motion is not None}
-            if changes and len(found) == len(runs) and self.score(found) <= enough:
+            moving = {name: motion for name, motion in runs.items() if motion is not None}
+            if changes and len(moving) == len(runs) and self.score(moving) <= enough:
                 return tuple(change.mistake for change in changes)
         return ()
 
@@ -335,15 +335,15 @@ def judged(case: Case, path: Path) -> Judgement:
         raise ValueError(
             f"the file does not give {', '.join(sorted(missing))}, which this case needs{unknown}"
         )
-    found = Judgement(outcomes, (), ignored)
-    mistakes = case.mistakes(tables, motions) if found.verdict != "exact" else ()
+    judgement = Judgement(outcomes, (), ignored)
+    mistakes = case.mistakes(tables, motions) if judgement.verdict != "exact" else ()
     # a maximum that a whole file does not reach is an answer, and a wrong one
     whole = all(motion.time[-1] > 0.99 * case.runs[name]["duration"] for name, motion in motions.items())
     asked = [one for one in outcomes if one.unit in ("alpha", "b") and one.error == math.inf]
     short = [one.name for one in asked if not (whole and one.name.startswith("maximum"))]
     if short and not mistakes and all(motion.tilt.max() < FALLEN for motion in motions.values()):
         raise ValueError(f"the samples do not cover the window of {', '.join(short)}")
-    return replace(found, mistakes=mistakes)
+    return replace(judgement, mistakes=mistakes)
 
 
 def main() -> int:
@@ -357,41 +357,41 @@ def main() -> int:
     given = parser.parse_args()
     case, reason = Case(cases[given.case]), ""
     try:
-        found = judged(case, given.trajectory)
+        judgement = judged(case, given.trajectory)
     except ValueError as error:
-        found, reason = Judgement((), (), ()), str(error)
+        judgement, reason = Judgement((), (), ()), str(error)
     asked = len(case.accept["criteria"])
-    print(f"{given.case}: {found.verdict} ({found.grade}), judged {found.judged} of {asked} criteria")
-    notes = [reason, f"columns not read: {name_list(found.columns_not_read)}" * bool(found.columns_not_read)]
-    for one in found.outcomes:
+    print(f"{given.case}: {judgement.verdict} ({judgement.grade}), judged {judgement.judged} of {asked} criteria")
+    notes = [reason, f"columns not read: {name_list(judgement.columns_not_read)}" * bool(judgement.columns_not_read)]
+    for one in judgement.outcomes:
         limits = "exact {:.2g}, good {:.2g}, pass {:.2g}".format(*one.bounds)
         value = f" {one.error:.3g} {one.unit} (run {one.run}; {limits})" if one.run else ""
         notes.append(f"{one.name}: {one.level}{value}")
-    notes += [f"likely mistake: {mistake.words}" for mistake in found.mistakes]
+    notes += [f"likely mistake: {mistake.words}" for mistake in judgement.mistakes]
     print(*(f"  {note}" for note in notes if note), sep="\n")
     criteria = [
         asdict(one) | {"level": one.level, "error": one.error if one.error < math.inf else None}
-        for one in found.outcomes
+        for one in judgement.outcomes
     ]
     result = {
         "schema": "result/1",
         "case": given.case,
         "label": given.label,
-        "verdict": found.verdict,
-        "grade": found.grade,
-        "judged": [found.judged, asked],
+        "verdict": judgement.verdict,
+        "grade": judgement.grade,
+        "judged": [judgement.judged, asked],
         "reason": reason,
         "criteria": criteria,
-        "columns_not_read": found.columns_not_read,
-        "likely_mistakes": [mistake.words for mistake in found.mistakes],
+        "columns_not_read": judgement.columns_not_read,
+        "likely_mistakes": [mistake.words for mistake in judgement.mistakes],
         "mistakes": [
-            asdict(one) | {"value": None if math.isnan(one.value) else one.value} for one in found.mistakes
+            asdict(one) | {"value": None if math.isnan(one.value) else one.value} for one in judgement.mistakes
         ],
         "check": "2",
         "reference_sha256": case.digest,
     }
     given.out.write_text(json.dumps(result, indent=1) + "\n", "utf-8")
-    return {"not satisfied": 1, "not tested": 2}.get(found.grade, 0)
+    return {"not satisfied": 1, "not tested": 2}.get(judgement.grade, 0)
 
 
 if __name__ == "__main__":
