@@ -78,7 +78,7 @@ def with_sliding(runs: dict[str, Table]) -> dict[str, Table]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
-def test_a_converged_solution_is_exact(judge: Judge, name: str) -> None:
+def test_converged_solution_is_graded_exact(judge: Judge, name: str) -> None:
     runs = tables(name, tilt_and_azimuth)
     judged = judge(name, with_sliding(runs) if name == SLIDING else runs)
     assert judged.verdict == "exact", judged.text
@@ -88,7 +88,7 @@ def test_a_converged_solution_is_exact(judge: Judge, name: str) -> None:
 
 @pytest.mark.parametrize("form", [quaternions, positions])
 @pytest.mark.parametrize("name", ["turn-recess", "scale-invariance"])
-def test_every_format_is_read(judge: Judge, name: str, form: Form) -> None:
+def test_every_file_format_is_read(judge: Judge, name: str, form: Form) -> None:
     judged = judge(name, tables(name, form))
     assert judged.verdict == "exact", judged.text
     # on flat ground positions do not tell where it leans
@@ -98,7 +98,7 @@ def test_every_format_is_read(judge: Judge, name: str, form: Form) -> None:
     assert judged.result["judged"] == [asked if complete else asked - 1, asked]
 
 
-def test_needed_columns_are_required_and_unread_ones_named(judge: Judge) -> None:
+def test_missing_columns_are_refused_and_unread_ones_named(judge: Judge) -> None:
     kept = {"time": "time", "tilt": "tilt", "azimuth": "azimut"}
     runs = {
         run: {title: table[key] for key, title in kept.items()}
@@ -123,7 +123,7 @@ def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name
 
 
 @pytest.mark.slow
-def test_the_published_table_says_what_each_planted_mistake_does() -> None:
+def test_published_table_of_planted_mistakes_is_reproduced() -> None:
     lines = [line for line in (PUBLISHED / "mistakes.md").read_text().splitlines() if line.startswith("|")]
     rows = {row[0]: row[1:] for row in ([cell.strip() for cell in line.split("|")[1:-1]] for line in lines)}
     assert set(rows) == {"case", "---", *CASES}
@@ -138,7 +138,7 @@ def test_the_published_table_says_what_each_planted_mistake_does() -> None:
 
 
 @pytest.mark.slow
-def test_another_tendon_fails_and_no_mistake_explains_it(judge: Judge) -> None:
+def test_wrong_tendon_fails_without_explanation(judge: Judge) -> None:
     for prestress, stiffness in ((1.02, 1.0), (1.0, 1.02), (0.0, 0.0)):
         judgements = {}
         for run, (case, support) in cases_of(PUBLISHED / "cases" / "tendon").items():
@@ -154,7 +154,7 @@ def test_another_tendon_fails_and_no_mistake_explains_it(judge: Judge) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_no_mistake_of_a_file_fails_without_explanation(judge: Judge) -> None:
+def test_model_errors_fail_without_explanation_by_a_file_mistake(judge: Judge) -> None:
     runs = tables("records-distribution", tilt_and_azimuth)
     weak = {run: {"time": table["time"], "tilt": table["tilt"] / 3.0} for run, table in runs.items()}
     larger = tables("el-centro", tilt_and_azimuth, larger=0.01)
@@ -206,14 +206,14 @@ def test_a_mistake_in_units_axes_or_clock_is_named(judge: Judge, mistake: str) -
         assert judged.mistakes[code] == (None if value is None else pytest.approx(value, rel=0.01))
 
 
-def test_planar_runs_leave_mistakes_for_other_runs_to_find(judge: Judge) -> None:
+def test_mistakes_hidden_in_planar_runs_are_found_in_others(judge: Judge) -> None:
     # an uplift in one direction is a turn as well as a mirror image
     runs = sparse(tables("uplift-directions", tilt_and_azimuth))
     mirrored = {run: table | {"azimuth": -table["azimuth"]} for run, table in runs.items()}
     assert list(judge("uplift-directions", mirrored).mistakes) == ["y_reversed"]
 
 
-def test_units_in_the_header_and_what_comes_after_the_window_are_no_mistake(judge: Judge) -> None:
+def test_header_units_and_data_after_the_window_are_accepted(judge: Judge) -> None:
     runs = tables("turn-flat", tilt_and_azimuth)
     for table in runs.values():
         table["azimuth"] = np.where(table["time"] > 3.05, 0.0, table["azimuth"])
@@ -247,7 +247,7 @@ def test_a_file_that_cannot_be_judged_is_rejected_with_its_reason(judge: Judge) 
         assert word in judged.result["reason"]
 
 
-def test_a_maximum_that_a_whole_file_never_reaches_fails(judge: Judge) -> None:
+def test_missing_tilt_maximum_in_a_complete_file_fails(judge: Judge) -> None:
     late, early = tables(IMPACT, tilt_and_azimuth), {}
     for run, one in late.items():
         early[run] = {key: column[one["time"] < 1.5] for key, column in one.items()}

@@ -69,7 +69,7 @@ def test_results_follow_their_schema() -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_each_criterion_and_run_has_its_answer(case: str) -> None:
+def test_each_criterion_and_run_has_a_reference_value(case: str) -> None:
     runs = [run["name"] for run in read(case, "case")["runs"]]
     known = {(one["name"], one["run"]) for one in read(case, "reference")["quantities"]}
     titles = set(table(case))
@@ -121,7 +121,7 @@ def test_engines_of_hard_contact_tend_to_the_same_numbers(case: str, number: int
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", SHORT)
-def test_the_files_are_what_is_computed_here(case: str) -> None:
+def test_published_files_equal_recomputed_references(case: str) -> None:
     definition = next(one for one in definitions() if one.name == case)
     assert json.loads(json.dumps(case_file(definition))) == read(case, "case")
     computed = reference(definition)
@@ -133,7 +133,7 @@ def test_the_files_are_what_is_computed_here(case: str) -> None:
         np.testing.assert_allclose(column, computed.columns[name], rtol=0, atol=1e-8)
 
 
-def test_the_turns_are_those_of_the_table_made_outside_the_project() -> None:
+def test_angles_of_turn_match_the_independent_table() -> None:
     lines = (REFERENCE / "finite_release.csv").read_text().splitlines()
     rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
     checked = 0
@@ -148,7 +148,7 @@ def test_the_turns_are_those_of_the_table_made_outside_the_project() -> None:
     assert checked == 6
 
 
-def test_closed_forms_and_quadratures_are_met() -> None:
+def test_references_match_closed_forms_and_quadratures() -> None:
     for case in ("turn-recess", "near-upright-pass", "tendon"):
         for run, (given, _) in cases_of(PUBLISHED / "cases" / case).items():
             if given.initial is None:
@@ -165,7 +165,7 @@ def test_closed_forms_and_quadratures_are_met() -> None:
     assert known["value"] == pytest.approx(200.0 * math.pi / rate, rel=1e-12)
 
 
-def test_a_start_as_a_rigid_body_is_the_start_in_angles() -> None:
+def test_rigid_body_start_equals_start_in_angles() -> None:
     """The contact point is on the original circle and has no velocity, and there is no twist rate."""
     for case in CASES:
         for run in read(case, "case")["runs"]:
@@ -223,7 +223,7 @@ def test_programs_need_numpy_only(copied: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted((PUBLISHED / "examples").iterdir()), ids=lambda path: path.stem)
 @pytest.mark.parametrize("place", ["archive", "checkout"])
-def test_examples_are_exact(path: Path, place: str, copied: Path, tmp_path: Path) -> None:
+def test_example_trajectories_are_graded_exact(path: Path, place: str, copied: Path, tmp_path: Path) -> None:
     folder = copied if place == "archive" else PUBLISHED
     command = [sys.executable, "-E", "-s", str(folder / "check.py"), "turn-recess", str(path)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -233,7 +233,7 @@ def test_examples_are_exact(path: Path, place: str, copied: Path, tmp_path: Path
     follows("result", result)
 
 
-def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
+def test_scoreboard_distinguishes_impossible_from_not_run() -> None:
     lines = (PUBLISHED / "scoreboard.md").read_text().splitlines()
     table = [line.strip("| ").split(" | ") for line in lines if line.startswith("| ")]
 
@@ -251,13 +251,13 @@ def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
     assert "not run" not in extrapolated.values()
 
 
-def test_one_size_of_five_does_not_make_scale_invariance(judge: Judge) -> None:
+def test_scale_invariance_needs_all_five_sizes(judge: Judge) -> None:
     columns = table("scale-invariance")
     given = {"r-1": {name: columns[name] for name in ("time", "tilt", "azimuth")}}
     assert judge("scale-invariance", given).verdict == "rejected"
 
 
-def test_the_scoreboard_is_made_of_results_by_these_references(copied: Path, tmp_path: Path) -> None:
+def test_scoreboard_uses_results_judged_by_current_references(copied: Path, tmp_path: Path) -> None:
     def made(folder: Path) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-I", str(folder / "scoreboard.py")]
         return subprocess.run(command, capture_output=True, text=True, check=False)

@@ -15,7 +15,7 @@ FOLDER = Path(__file__).parent
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
-def test_help_answers(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_benchmark_scripts_print_help(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match="0"):
         main([name, "--help"])
     assert f"usage: python tests/benchmarks {name}" in capsys.readouterr().out

@@ -31,9 +31,7 @@ def row_of(table: pd.DataFrame, method: str, ratio: float) -> dict[str, float]:
 
 @pytest.mark.parametrize("title", METHODS)
 @pytest.mark.parametrize("ratio", [1.0, 4.0])
-def test_each_number_of_the_guide_is_that_of_the_table(
-    medians: pd.DataFrame, title: str, ratio: float
-) -> None:
+def test_deck_guide_numbers_equal_the_table(medians: pd.DataFrame, title: str, ratio: float) -> None:
     row = row_of(medians, METHODS[title], ratio)
     numbers = [
         "{:.2f} ({:.2f} to {:.2f})".format(*(row[f"{name}{end}"] for end in ("", "_low", "_high")))
@@ -45,7 +43,7 @@ def test_each_number_of_the_guide_is_that_of_the_table(
     assert line in WORDS
 
 
-def test_a_deck_helps_by_what_the_guide_says(medians: pd.DataFrame) -> None:
+def test_guide_benefit_of_a_deck_matches_the_table(medians: pd.DataFrame) -> None:
     few = pd.read_csv(PUBLISHED / "medians-p695.csv")
     for table in (medians, few):
         for ratio in (1.0, 4.0):
@@ -59,7 +57,7 @@ def test_a_deck_helps_by_what_the_guide_says(medians: pd.DataFrame) -> None:
     assert ((rows["over_equivalent_low"] <= 1.0) & (rows["over_equivalent_high"] >= 1.0)).all()
 
 
-def test_what_a_deck_asks_for_is_what_the_guide_says() -> None:
+def test_guide_demands_of_a_deck_match_the_table() -> None:
     rows = pd.read_csv(PUBLISHED / "needs-300.csv").set_index("slab_mass_ratio")
     words = WORDS.replace("\n", " ")
     assert "a friction of {:.2f}, {:.2f} and {:.2f} at the base".format(*rows["friction_base"]) in words
@@ -68,7 +66,7 @@ def test_what_a_deck_asks_for_is_what_the_guide_says() -> None:
 
 
 @pytest.mark.parametrize("motions", ["p695", "300"])
-def test_in_one_plane_a_deck_is_a_larger_cylinder(motions: str) -> None:
+def test_planar_motion_under_a_deck_equals_a_larger_cylinder(motions: str) -> None:
     table = pd.read_csv(PUBLISHED / f"medians-{motions}.csv")
     planar = table[table["method"].str.startswith("planar") & (table["slab_mass_ratio"] > 0.0)]
     # the levels that rounding decides; synthetic motions have none

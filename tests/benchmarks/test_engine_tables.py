@@ -22,7 +22,7 @@ def test_values_belong_to_engine_settings_and_include_the_default() -> None:
                 assert defaults[name] in values[name], name
 
 
-def test_settings_are_judged_by_exact_solutions_that_a_damped_slip_misses(
+def test_exact_solutions_reject_settings_with_damped_slip(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(engine_settings, "STEP", 4e-4)
@@ -39,7 +39,7 @@ def test_settings_are_judged_by_exact_solutions_that_a_damped_slip_misses(
     assert float(default["wobble"]) < 5e-6
 
 
-def test_a_base_on_points_uplifts_as_one_that_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_base_on_fixed_contact_points_uplifts_like_followed_contact(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in {"BODIES": ((6.0, 0.2),), "POINTS": (16,), "LENGTH": 2.5, "EARLY": 0.3}.items():
         monkeypatch.setattr(engine_settings, name, value)
     monkeypatch.setattr(engine_settings, "motions_of", lambda _: [el_centro_1940().scaled(2.0)])

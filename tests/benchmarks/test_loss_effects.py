@@ -9,7 +9,7 @@ from benchmarks.loss_effects import SHARES, by_length, main, stored
 PAGE = Path(__file__).parents[2] / "docs" / "theory" / "energy-loss.md"
 
 
-def test_the_sentences_are_those_of_the_tables() -> None:
+def test_stated_loss_effects_match_the_tables() -> None:
     words = " ".join(PAGE.read_text(encoding="utf-8").split())
     table = stored("fragility")
     table = table[table["limit"] == "overturned"]
@@ -35,5 +35,5 @@ def test_the_sentences_are_those_of_the_tables() -> None:
         assert form.format(*(agreements.loc[trial]["diverged"][share] for share in SHARES)) in words
 
 
-def test_the_command_prints_them() -> None:
+def test_loss_effects_command_prints_the_tables() -> None:
     assert main([]) == 0

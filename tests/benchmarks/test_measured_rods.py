@@ -34,7 +34,7 @@ def made_track() -> np.ndarray:
     return np.column_stack([time, place + noise[:, 0], noise[:, 1]])
 
 
-def test_a_known_loss_is_found_by_both_estimators() -> None:
+def test_both_estimators_recover_a_known_loss() -> None:
     names = ["pass", "time_s", "amplitude_before_px", "amplitude_after_px"]
     names += ["speed_before_px_s", "speed_after_px_s"]
     table = pd.DataFrame(passes_of(made_track()), columns=names)

@@ -25,13 +25,13 @@ def said() -> dict[tuple[object, ...], tuple[float, ...]]:
     }
 
 
-def test_the_guide_states_every_problem() -> None:
+def test_guide_lists_every_coverage_problem() -> None:
     assert list(said()) == [(problem[0], problem[1], problem[2], *problem[4:]) for problem in PROBLEMS]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("place", [0, 3, 8])
-def test_the_shares_of_the_guide_are_those_of_the_trials(place: int) -> None:
+def test_guide_coverage_shares_match_the_trials(place: int) -> None:
     (row,) = coverage(TRIALS, 7, [PROBLEMS[place]])
     for name, share in zip(("frequency", "above", "ratio"), list(said().values())[place], strict=True):
         error = math.sqrt(max(share * (1.0 - share), 0.02) * (1.0 / TRIALS + 1.0 / 400.0))

@@ -31,7 +31,7 @@ def medians(motions: str) -> pd.DataFrame:
     return table.set_index(["body", "prestress", "stiffness", "method"])
 
 
-def test_each_ratio_of_the_page_is_that_of_its_table() -> None:
+def test_tendon_page_ratios_equal_their_tables() -> None:
     numbers = []
     for motions, (without, planes) in STATED.items():
         table = medians(motions)
@@ -58,14 +58,14 @@ def test_claims_on_flat_ground_match_their_table() -> None:
         assert f"{overturned} of {table['motions'].iloc[0]} overturn" in PAGE
 
 
-def test_more_prestress_takes_more_to_overturn() -> None:
+def test_overturning_median_increases_with_prestress() -> None:
     for (_, stiffness, method), rows in medians("p695").groupby(level=["body", "stiffness", "method"]):
         if method == "recess model" and stiffness == 0.0:
             assert rows["median"].is_monotonic_increasing
 
 
 @pytest.mark.slow
-def test_many_motions_are_counted_at_levels_about_the_median() -> None:
+def test_many_motion_medians_count_overturning_at_levels_around_them() -> None:
     motions = synthetic_motions(3, peak=1.0, seed=3)
     rows = itertools.islice(medians_of_many(motions), 8)  # without a tendon, and with half a weight
     table = pd.DataFrame(rows)

@@ -27,14 +27,14 @@ def row(simulator: str, settings: str) -> Any:
     return table.loc[(simulator, settings)]
 
 
-def test_the_page_that_is_included_is_the_table() -> None:
+def test_included_page_equals_the_stored_table() -> None:
     stored = (PUBLISHED / "simulators.md").read_text(encoding="utf-8")
     made = re.search(r"Made by `(.+)` on (.+)\.", stored)
     assert made is not None
     assert page(known(PUBLISHED), made[2], made[1]) == stored
 
 
-def test_no_default_settings_do_all_three() -> None:
+def test_no_default_settings_pass_all_three_tests() -> None:
     table = known(PUBLISHED)
     default = table[(table["settings"] == "default") & table["turn"].notna()]
     does = (abs(default["turn"] - EXACT) < TURN_ERROR) & (abs(default["tilt"] - 1.0) < TILT_ERROR)
@@ -43,7 +43,7 @@ def test_no_default_settings_do_all_three() -> None:
 
 
 @pytest.mark.parametrize("corners", [32, 64])
-def test_physx_does_what_a_prism_does(corners: int) -> None:
+def test_physx_matches_an_ideal_prism(corners: int) -> None:
     exact, mesh = row(f"prism-{corners}", "default"), row(f"physx-{corners}", "best")
     for each in (exact, mesh):
         assert (f"{each.turn:.2f}", f"{each.tilt:.3f}") in PAIRS
@@ -53,12 +53,12 @@ def test_physx_does_what_a_prism_does(corners: int) -> None:
     assert not any("leans at 0.49 g" in row(name, "best").uplift for name in ("physx", f"physx-{corners}"))
 
 
-def test_the_loss_of_a_prism_is_halved_with_twice_the_corners() -> None:
+def test_prism_loss_halves_with_twice_the_corners() -> None:
     losses = [1.0 - row(f"prism-{corners}", "default").tilt for corners in (32, 64, 128)]
     assert "{:.1f} %, {:.1f} % and {:.1f} %".format(*(100 * loss for loss in losses)) in WORDS
 
 
-def test_a_prism_runs_as_the_table_says() -> None:
+def test_prism_simulation_matches_the_table() -> None:
     step = 1e-3  # a landing is found up to a step late: 0.3 % of the tilt
     measured = worlds.turned(worlds.prism(step, False, 32), step)
     kept = row("prism-32", "default")
@@ -73,7 +73,7 @@ def test_simulators_that_move_no_rigid_body_are_named() -> None:
     assert all(f"`{name}`" in WORDS for name in cannot)
 
 
-def test_newton_leans_on_its_own_contacts() -> None:
+def test_newton_uplifts_early_with_its_own_contacts() -> None:
     table = known(PUBLISHED)
     own = table[table["simulator"].str.startswith("newton-") & table["turn"].notna()]
     assert own["uplift"].str.contains("7 × leans at 0.49 g").all()
@@ -89,7 +89,7 @@ def test_newton_leans_on_its_own_contacts() -> None:
         assert (f"{each.turn:.2f}", f"{each.tilt:.3f}") in PAIRS
 
 
-def test_every_turn_and_tilt_of_the_page_is_one_of_the_table() -> None:
+def test_page_turns_and_tilts_are_in_the_table() -> None:
     table = known(PUBLISHED)
     stated = {(f"{turn:.2f}", f"{tilt:.3f}") for turn, tilt in zip(table["turn"], table["tilt"], strict=True)}
     assert len(PAIRS) >= 7

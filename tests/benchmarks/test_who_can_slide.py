@@ -11,7 +11,7 @@ from rockwobble import reduced
 from .who_can_slide import draws, judged, main
 
 
-def test_a_slide_that_is_off_or_turns_is_wrong() -> None:
+def test_slide_with_displacement_error_or_twist_is_wrong() -> None:
     case = next(draws())
     exact = reduced.simulate(case, support="flat", sample_step=0.01)
     assert judged(case, exact) == (0.0, "")
@@ -22,7 +22,7 @@ def test_a_slide_that_is_off_or_turns_is_wrong() -> None:
     assert wrong[1:] == ["twist 0.020"]
 
 
-def test_the_command_counts_what_is_right(capsys: pytest.CaptureFixture[str]) -> None:
+def test_who_can_slide_counts_correct_draws(capsys: pytest.CaptureFixture[str]) -> None:
     main(["mujoco", "exudyn", "--draws", "1"])
     told = capsys.readouterr().out
     assert "mujoco: right without a diagnostic 1 of 1, wrong without one 0" in told

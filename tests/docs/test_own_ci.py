@@ -59,7 +59,7 @@ def cases_in(report: Path) -> list[ElementTree.Element]:
     return list(ElementTree.parse(report).getroot().iter("testcase"))
 
 
-def test_the_steps_are_those_that_a_runner_needs() -> None:
+def test_ci_example_has_the_steps_a_runner_needs() -> None:
     uses = [step["uses"].split("@")[0].removeprefix("actions/") for step in STEPS if "uses" in step]
     assert uses == ["checkout", "setup-python", "cache", "upload-artifact"]
     cached = next(step["with"]["path"] for step in STEPS if "cache@" in step.get("uses", ""))

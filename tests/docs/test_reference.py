@@ -70,7 +70,7 @@ def public(package: str) -> dict[str, object]:
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_public_functions_and_members_say_what_they_are(package: str) -> None:
+def test_public_functions_and_members_have_docstrings(package: str) -> None:
     silent = []
     for name, thing in public(package).items():
         if inspect.isfunction(thing):
@@ -104,18 +104,18 @@ def test_reference_identifiers_are_well_formed_and_all_citations_resolve() -> No
         assert f"\n[{cited}]\n" in page, cited
 
 
-def test_nothing_is_documented_that_is_not_there() -> None:
+def test_documented_names_exist() -> None:
     names = [name.rpartition(".")[::2] for name in documented()]
     assert [each for each in names if not hasattr(importlib.import_module(each[0]), each[1])] == []
 
 
-def test_every_name_at_the_top_is_on_the_first_page() -> None:
+def test_top_level_names_are_on_the_first_reference_page() -> None:
     page = (API / "index.md").read_text(encoding="utf-8")
     lacking = {name for name in rockwobble.__all__ if f"`rw.{name}`" not in page}
     assert lacking - STUDIES.keys() == set()  # which the page of the studies lists by itself
 
 
-def test_every_command_has_its_help_on_a_page() -> None:
+def test_every_command_help_is_on_a_reference_page() -> None:
     pages = (DOCS / "reference" / "commands").glob("*.md")
     shown = "".join(page.read_text(encoding="utf-8") for page in pages)
     groups = " ".join(re.findall(r"\{rockwobble-commands\} (.+)", shown)).split()
@@ -155,7 +155,7 @@ def constants(node: ast.AST) -> set[str]:
     return {value for value in values if isinstance(value, str)}
 
 
-def test_levels_of_keys_on_their_page_are_those_of_the_code() -> None:
+def test_documented_finding_levels_match_the_code() -> None:
     decided = 0
     for path in (path for part in ("compare", "studies") for path in (ROOT / part).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -177,7 +177,7 @@ def test_levels_of_keys_on_their_page_are_those_of_the_code() -> None:
 
 
 @pytest.mark.slow
-def test_published_findings_have_the_levels_of_their_page() -> None:
+def test_published_finding_levels_match_the_documentation() -> None:
     seen: set[str] = set()
     studies = ("advice/pier", "advice/tower", "ensemble/p695-2", "fragility/p695", "risk/p695", "validity")
     for folder in studies:

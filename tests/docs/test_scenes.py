@@ -56,7 +56,7 @@ def scene(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Mo
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of the engines' own modules
 @pytest.mark.parametrize("scene", ENGINES, indirect=True)
-def test_the_can_turns_and_tilts_as_it_must(scene: ModuleType) -> None:
+def test_can_scene_matches_exact_turn_and_tilt(scene: ModuleType) -> None:
     turn, tilt = scene.next_largest_tilt()
     single = scene.__name__ == "rapier_can"
     assert abs(turn - TURN) < (SINGLE_TURN_ERROR if single else TURN_ERROR)
@@ -67,7 +67,7 @@ def test_the_can_turns_and_tilts_as_it_must(scene: ModuleType) -> None:
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 @pytest.mark.parametrize("scene", ENGINES, indirect=True)
-def test_it_does_not_with_the_settings_that_the_engine_starts_from(scene: ModuleType) -> None:
+def test_stated_tilt_loss_with_default_engine_settings_holds(scene: ModuleType) -> None:
     name = scene.__name__.removesuffix("_can")
     friction = {"friction": 1.0} if name == "bullet" else {}  # as in the table: no setting of the engine
     _, tilt = getattr(importlib.import_module("defaults"), name)(**friction)
@@ -75,7 +75,7 @@ def test_it_does_not_with_the_settings_that_the_engine_starts_from(scene: Module
     assert is_stated(100.0 * (1.0 - tilt), "default settings", rf"([\d.]+) % (?:of its tilt )?in {engine}")
 
 
-def test_the_can_as_data_is_the_can_of_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_can_model_file_equals_the_can_of_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
     import mujoco  # type: ignore[import-untyped]
 
     monkeypatch.syspath_prepend(str(SCENES))
@@ -94,7 +94,7 @@ def test_the_can_as_data_is_the_can_of_the_scene(monkeypatch: pytest.MonkeyPatch
     assert start.qvel[:3] == pytest.approx([0.0, 0.0486256857, 0.0], abs=1e-9)
 
 
-def test_the_tendon_brings_the_can_back_when_it_must(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tendon_recentres_the_can_at_the_stated_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(SCENES))
     scene = importlib.import_module("mujoco_tendon")
     tendon = rw.Tendon(prestress=scene.PRESTRESS / 9.81, stiffness=scene.STIFFNESS / 9.81)
@@ -147,7 +147,7 @@ def test_close_passes_amplify_in_an_engine_as_in_the_model() -> None:
     assert 1e2 < growth[1] < 1e5
 
 
-def test_the_file_of_close_passes_has_their_release() -> None:
+def test_close_passes_file_has_the_stated_release() -> None:
     import mujoco
 
     model = mujoco.MjModel.from_xml_path(str(SCENES / "close_passes.xml"))
@@ -163,7 +163,7 @@ def test_the_file_of_close_passes_has_their_release() -> None:
     assert world == pytest.approx(turning)
 
 
-def test_the_uplift_sweep_and_the_turn_are_those_of_the_model() -> None:
+def test_scene_uplift_sweep_and_turn_match_the_model() -> None:
     for share, stated in ((0.49, 0.0), (0.51, 3.69e-3)):
         motion = GroundMotion([[0.0, 0.0], *[[share * 9.81, 0.0]] * 25], 0.02)
         trace = rw.simulate(Case(CAN, motion, duration=0.5), support="flat", rtol=1e-11)
@@ -175,7 +175,7 @@ def test_the_uplift_sweep_and_the_turn_are_those_of_the_model() -> None:
     assert 2.0 * passed.time == pytest.approx(1.4554, abs=5e-5)
 
 
-def test_drawings_are_those_that_their_scripts_make(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_committed_drawings_equal_script_output(monkeypatch: pytest.MonkeyPatch) -> None:
     figures = SCENES.parent / "figures"
     monkeypatch.syspath_prepend(str(figures))
     drawn = importlib.import_module("geometry").figures()

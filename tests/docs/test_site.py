@@ -99,7 +99,7 @@ def test_every_link_inside_resolves_and_outside_are_pages(pages: dict[str, Page]
     assert {each for each in schemes if each[1] not in ("", "https", "data")} == set()
 
 
-def test_the_font_of_the_formulas_has_every_character_of_them() -> None:
+def test_formula_font_has_every_character_used() -> None:
     known = set(TTFont(BUILT / "_static" / "math.woff").getBestCmap())
     lacking = set()
     for name in names():
@@ -112,7 +112,7 @@ def test_the_font_of_the_formulas_has_every_character_of_them() -> None:
     assert lacking == set()
 
 
-def test_no_term_is_used_before_it_is_a_link_to_the_glossary(pages: dict[str, Page]) -> None:
+def test_first_use_of_each_term_links_to_the_glossary(pages: dict[str, Page]) -> None:
     terms = set(pages["glossary.html"].terms) - {"pass", "guide", "record"}  # words of other senses, too
     assert len(terms) > 25
     loose = []

@@ -43,7 +43,7 @@ def test_importing_test_files_come_first_by_package() -> None:
     assert "tests/studies/test_risk.py" in asked
 
 
-def test_a_sample_is_spread_over_the_files_and_always_the_same() -> None:
+def test_sample_of_faults_is_reproducible_and_spread_over_files() -> None:
     first = sample(CHECKOUT, 40, 1)
     assert len({fault.file for fault in first}) == 40
     assert first == sample(CHECKOUT, 40, 1) != sample(CHECKOUT, 40, 2)
@@ -54,7 +54,7 @@ def test_a_sample_is_spread_over_the_files_and_always_the_same() -> None:
 @pytest.mark.parametrize(
     ("checked", "test", "found_by"), [(1, 2, "check"), (2, 1, "tests"), (1, 1, "tests"), (2, 2, "nothing")]
 )
-def test_tests_are_asked_first_and_then_check(
+def test_tests_run_before_the_check_on_each_fault(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, checked: int, test: int, found_by: str
 ) -> None:
     (tmp_path / "models").mkdir()

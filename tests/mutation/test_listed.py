@@ -26,7 +26,7 @@ def short_motions(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("mutation", mutations(), ids=lambda mutation: mutation.name)
-def test_a_fault_is_found(mutation: Mutation) -> None:
+def test_every_listed_fault_is_detected(mutation: Mutation) -> None:
     failure = first_failure(mutation)
     assert failure is not None
     assert failure.group == mutation.group
@@ -36,7 +36,7 @@ def test_a_copy_without_a_fault_passes() -> None:
     assert false_alarm() is None
 
 
-def test_a_copy_leaves_nothing_behind() -> None:
+def test_mutated_copy_leaves_no_modules_loaded() -> None:
     import sys
 
     with mutated() as copy:
@@ -47,7 +47,7 @@ def test_a_copy_leaves_nothing_behind() -> None:
     assert reduced.simulate.__module__ == "rockwobble.reduced.simulation"
 
 
-def test_every_sum_has_faults_in_both_senses() -> None:
+def test_every_sum_of_the_equations_has_named_term_faults() -> None:
     names = [each.name for each in term_faults(1.01)]
     assert len(set(names)) == len(names) > 40
     assert all(any(f" of {target}," in name for name in names) for target in SUMS)
@@ -71,12 +71,12 @@ def test_every_sum_has_faults_in_both_senses() -> None:
         ),
     ],
 )
-def test_a_fault_whose_place_is_gone_is_an_error(change: Change, message: str) -> None:
+def test_fault_without_its_place_in_the_source_is_an_error(change: Change, message: str) -> None:
     with pytest.raises(ValueError, match=re.escape(message)), mutated(Fault(file="body.py", change=change)):
         pass
 
 
-def test_a_fault_that_nothing_finds_is_said(
+def test_undetected_faults_are_reported(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     harmless = Mutation(
@@ -90,7 +90,7 @@ def test_a_fault_that_nothing_finds_is_said(
     assert "nothing wrong: MISSED" in capsys.readouterr().out
 
 
-def test_a_fault_whose_own_code_raises_is_not_found(
+def test_fault_whose_code_raises_does_not_count_as_detected(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A wrapper with a parameter too few ends every run in a TypeError: no check has found what it plants."""

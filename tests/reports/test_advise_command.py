@@ -75,7 +75,7 @@ def options_of(records: Path, **names: str) -> list[str]:
         ({}, ["--release-tilt-deg", "5", "--rolling-rate", "0.5"], {"overturning": "satisfied"}),
     ],
 )
-def test_every_kind_of_case_gets_its_page(names, more, expected, records, tmp_path, capsys):
+def test_advice_page_is_drawn_for_every_kind_of_case(names, more, expected, records, tmp_path, capsys):
     assert call(*options_of(records, **names), *more, *FAST, "--out", str(tmp_path)) == 0
     printed = capsys.readouterr().out
     assert printed.count("\n") <= SCREEN
@@ -120,11 +120,11 @@ def printed(advice: Advice, *, details: bool = False) -> str:
     return console.export_text()
 
 
-def test_details_are_printed_where_they_are_asked_for(advice):
+def test_details_are_printed_only_with_the_option(advice):
     assert ["Assumptions" in printed(advice, details=details) for details in (False, True)] == [False, True]
 
 
-def test_the_numbers_are_those_of_the_groups(advice):
+def test_printed_numbers_equal_the_group_table(advice):
     given, *groups = page_of(advice).values["numbers"]
     alpha = np.degrees(advice.cylinder.alpha)
     # its digits follow the scatter of its copies
@@ -153,7 +153,7 @@ def finding_of(advice: Advice, group: str) -> tuple[str, Mapping[str, Any]]:
     return finding.key, finding.values
 
 
-def test_a_grade_gives_the_numbers_it_rests_on(advice):
+def test_each_grade_states_its_deciding_numbers(advice):
     """Those of tables and facts, under the key of its reason."""
     needed = advice.demands.set_index("demand")["value"]["friction"]
     assert finding_of(advice, "friction") == ("friction.not_given", {"demand": needed})
@@ -193,7 +193,7 @@ DIVERGENCES = {
 
 
 @pytest.mark.slow
-def test_every_code_has_words(advice):
+def test_every_finding_code_has_words(advice):
     assert {*DIVERGENCES} >= {"in time", "later", "much later", "earlier", "never, as predicted"}
     engines = [ENGINE | {"divergence": each} for each in (*DIVERGENCES, *UNTESTED)]
     engines += [ENGINE | {"outcome": "overturned"}, ENGINE | {"moves": False}]
@@ -238,7 +238,7 @@ def test_a_frame_states_its_columns_and_their_limit(advice):
     assert finding_of(mass, "weight") == ("weight.column", {"mass": 67.5, "mass_column": 45.0})
 
 
-def test_chatter_of_a_closed_base_is_no_change_of_the_response(advice):
+def test_chatter_of_a_closed_base_is_not_reported_as_sensitivity(advice):
     """Of a tilt of 1e-6 alpha and one of 5e-6 alpha neither opens the base: it is not five times as much."""
     tilts = np.geomspace(1e-6, 5e-6, len(advice.as_strong))
     response = {**advice.facts["response"], "peak_tilt": 1e-5}
@@ -272,7 +272,7 @@ def test_a_sliding_body_without_uplift_is_not_called_at_rest(advice):
     assert finding_of(changed(still, friction=0.05), "verdict")[0] == "verdict.at_rest"
 
 
-def test_a_case_at_rest_begins_with_what_keeps_it_there(advice):
+def test_page_at_rest_states_first_why_nothing_moves(advice):
     at_rest = {**advice.facts["response"], "uplift_time": math.inf, "diagnostics": []}
     still = changed(advice, response=at_rest, vertical={**advice.facts["vertical"], "source": "other"})
     weak = {**advice.facts["motion"], "friction_at_rest": 0.0, "uplift_factor": 2.5}
@@ -295,7 +295,7 @@ def test_a_case_at_rest_begins_with_what_keeps_it_there(advice):
     assert not advice.findings().of("rest")
 
 
-def test_the_case_and_its_assumptions_are_those_asked(advice):
+def test_page_states_the_given_case_and_its_assumptions(advice):
     asked = changed(with_columns(advice, 3), rolling_resistance=0.012, friction=None, support="flat")
     for each, keys, length in (
         (advice, {"assumption.recess"}, math.nan),
@@ -320,7 +320,7 @@ def test_the_overturning_range_is_stated_with_its_lowest_scale(advice):
 
 
 @pytest.mark.parametrize(("balance", "drawn"), [(None, 1.2), (1.63, 1.5), (1.2, 1.2 * 1.2), (math.inf, 1.5)])
-def test_the_picture_cuts_no_tilt_that_a_tendon_brings_back(
+def test_picture_shows_tilts_that_a_tendon_recentres(
     advice: Advice, balance: float | None, drawn: float
 ) -> None:
     tendon = None if balance is None else {"balance_tilt": balance}
@@ -338,7 +338,7 @@ def test_the_picture_cuts_no_tilt_that_a_tendon_brings_back(
     assert steps.min() > 0.1 * panel.y.high
 
 
-def test_the_page_of_a_release_is_the_golden_one():
+def test_page_of_a_release_matches_golden_file():
     frame = WobblingFrame(Cylinder(semidiagonal=6.0, tan_alpha=0.2), slab_mass_ratio=0.5)
     case = Case(frame, initial=InitialState(0.08, rolling_rate=0.3), duration=3.0, friction=0.5)
     is_golden(advise(case, copies=20))

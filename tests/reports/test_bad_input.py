@@ -199,7 +199,7 @@ def flags_of(command: str, *annotations: type) -> list[str]:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_what_is_no_number_is_refused_by_every_option_of_a_number(refused, command: str) -> None:
+def test_numeric_options_refuse_values_that_are_not_numbers(refused, command: str) -> None:
     numbers = [*((flag, "2.5x") for flag in flags_of(command, float)),
                *((flag, "2.5") for flag in flags_of(command, int))]  # fmt: skip
     for flag, text in numbers:

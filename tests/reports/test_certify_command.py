@@ -39,7 +39,7 @@ def changed(certificate: Path, folder: Path) -> Path:
     return path
 
 
-def test_a_certificate_says_what_holds_and_what_is_open(certificate: Path) -> None:
+def test_certificate_lists_verified_and_unverified_claims(certificate: Path) -> None:
     stored = json.loads(certificate.read_text())
     assert len(stored["fingerprint"]) == 14
     assert {claim["status"] for claim in stored["claims"]} == {"verified"}
@@ -48,7 +48,7 @@ def test_a_certificate_says_what_holds_and_what_is_open(certificate: Path) -> No
     assert {"python", "numpy", "rockwobble"} <= set(stored["versions"])
 
 
-def test_verify_answers_with_one_word_and_its_exit_code(
+def test_verify_prints_one_verdict_with_its_exit_code(
     run: Run, certificate: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run("verify", str(certificate)) == 0
@@ -84,7 +84,7 @@ def test_nothing_is_certified_without_a_claim() -> None:
 
 
 @pytest.mark.slow
-def test_a_certificate_of_an_engine_holds_claims_of_that_engine_alone(
+def test_certificate_of_an_engine_has_only_claims_of_that_engine(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     claims: list[Result] = []
@@ -120,9 +120,7 @@ def wrong(case, support):
 
 
 @pytest.mark.slow
-def test_a_model_of_somebody_else_is_checked(
-    run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_external_model_is_checked(run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "rocking_of_mine.py").write_text(MODEL)
     assert run("check", "--model", "rocking_of_mine:good", "--json", "good.json") == 0
     assert "return energy" in capsys.readouterr().out
@@ -134,9 +132,7 @@ def test_a_model_of_somebody_else_is_checked(
     assert groups == {"exact", "conserved", "rest", "invariance", "trace", "agreement"}
 
 
-def test_a_trajectory_of_somebody_else_is_checked(
-    run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_external_trajectory_is_checked(run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "one.suite.toml").write_text(
         '[[runs]]\nengine = "mujoco"\nsupport = "recess"\n[[cases]]\nname = "release"\n'
         "cylinder = { semidiagonal = 6, tan_alpha = 0.2 }\n"

@@ -47,12 +47,14 @@ def check_of(measure: Any) -> tuple[groups.Check, ...]:
     return (groups.Check(measure=measure, supports=("recess",)),)
 
 
-def test_the_page_is_the_golden_one() -> None:
+def test_page_matches_golden_file() -> None:
     made = checks(GOOD, BAD, NONE, LEFT)
     is_golden(dataclasses.replace(made, facts={**made.facts, "versions": {}}))
 
 
-def test_groups_that_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_passing_groups_are_summarised_in_every_output(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     paths = [tmp_path / name for name in ("check.json", "check.xml", "check.md")]
     options = ["--json", str(paths[0]), "--junit", str(paths[1]), "--markdown", str(paths[2])]
     assert run(*FAST, *options) == 0
@@ -69,7 +71,7 @@ def test_groups_that_hold(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert [path.name for path in tmp_path.iterdir() if path not in paths] == []
 
 
-def test_failures_alone_are_printed_and_end_with_1(
+def test_check_prints_only_failures_and_exits_with_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(groups, "baseline_subjects", lambda: [groups.subjects.reduced_model()])
@@ -81,7 +83,7 @@ def test_failures_alone_are_printed_and_end_with_1(
     assert all(line.startswith(head) for line, head in zip(lines, heads, strict=True))
 
 
-def test_a_finding_of_a_failure_has_measure_bound_reason_and_cause() -> None:
+def test_failure_finding_has_measure_bound_reason_and_cause() -> None:
     failed = dataclasses.replace(BAD, cause="axial inertia +5 %")
     summary, finding = checks(GOOD, failed).findings()
     values = {name: value for name, value, _ in finding.quantities()}
@@ -90,7 +92,7 @@ def test_a_finding_of_a_failure_has_measure_bound_reason_and_cause() -> None:
     assert (summary.key, [value for _, value, _ in summary.quantities()][:2]) == ("check.failed", [1, 2])
 
 
-def test_the_version_of_a_baseline_is_said_once_where_nothing_has_changed() -> None:
+def test_unchanged_baseline_states_its_version_once() -> None:
     note = "the baseline is of mujoco 3.9.9, this is 4.0.0"
     same = [dataclasses.replace(GOOD, group="baseline", name=name, note=note) for name in ("one", "two")]
     console = Console(file=io.StringIO(), record=True, width=100)
@@ -99,7 +101,7 @@ def test_the_version_of_a_baseline_is_said_once_where_nothing_has_changed() -> N
 
 
 @pytest.mark.parametrize("option", ["--json", "--junit", "--markdown"])
-def test_an_unwritable_report_is_one_line_after_the_result(
+def test_unwritable_report_gives_one_line_after_the_result(
     option: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     def in_the_way(subject: Subject, support: str) -> Iterator[Result]:
@@ -114,7 +116,7 @@ def test_an_unwritable_report_is_one_line_after_the_result(
     assert re.fullmatch(r"(\d of \d checks[^\n]*\n)*rockwobble: [^\n]*/a\b[^\n]*\n", err)
 
 
-def test_junit_counts_failures_and_what_did_not_run() -> None:
+def test_junit_counts_failures_and_skipped_checks() -> None:
     root = ElementTree.fromstring(as_junit(checks(GOOD, BAD, NONE, LEFT)))
     agreement = root.find("testsuite[@name='agreement']")
     assert agreement is not None
@@ -127,7 +129,7 @@ def test_junit_counts_failures_and_what_did_not_run() -> None:
     assert ElementTree.fromstring(as_junit(checks(strange))) is not None
 
 
-def test_results_are_saved_shown_and_drawn_again(
+def test_check_results_are_saved_shown_and_redrawn(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     monkeypatch.setattr(groups, "baseline_subjects", lambda: [groups.subjects.reduced_model()])
@@ -148,7 +150,7 @@ def test_results_are_saved_shown_and_drawn_again(
     assert run("--update-baseline", "--out", str(out)) == 2
 
 
-def test_an_update_needs_a_reason_and_keeps_it(
+def test_baseline_update_requires_and_stores_a_reason(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     right = groups.subjects.reduced_model()

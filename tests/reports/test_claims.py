@@ -96,14 +96,14 @@ def printed_ratio(study: str, cylinder: str | None, method: str, against: str | 
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_each_ratio_of_a_page_is_that_of_its_table(page: str) -> None:
+def test_page_ratios_equal_their_tables(page: str) -> None:
     assert re.findall(RATIO, words(page)) == [printed_ratio(*row) for row in PAGES[page]]
 
 
 @pytest.mark.parametrize(
     "page", ["README.md", "docs/index.md", "docs/guide/fragility.md", "docs/guide/risk.md"]
 )
-def test_an_interval_that_includes_1_is_called_that_beside_it(page: str) -> None:
+def test_ratios_with_intervals_including_1_say_so(page: str) -> None:
     text = words(page)
     for match in re.finditer(RATIO, text):
         ratio, low, high = map(float, match.groups())
@@ -111,7 +111,7 @@ def test_an_interval_that_includes_1_is_called_that_beside_it(page: str) -> None
             assert "includes 1" in text[match.end() : match.end() + 120], match.group()
 
 
-def test_a_tendon_changes_the_frequency_as_the_guide_says() -> None:
+def test_guide_frequency_with_a_tendon_matches_the_table() -> None:
     tables = [pd.read_parquet(PUBLISHED / study / "risk.parquet") for study in ("risk/tendon", "risk/p695")]
     of_pier = [table[table["cylinder"] == "pier"].set_index("method") for table in tables]
     tied, free = (f"{rows['annual_frequency']['recess model']:.1e}".replace("e-0", "e-") for rows in of_pier)
@@ -135,7 +135,7 @@ def test_the_readme_shows_the_terminal_output_of_the_published_advice(
 
 
 @pytest.mark.slow
-def test_run_time_of_the_reduced_model_is_as_in_the_readme() -> None:
+def test_readme_run_time_of_the_reduced_model_holds() -> None:
     case = rw.Case(rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2), rw.el_centro_1940())
     sizes, scales = np.linspace(2.0, 20.0, 10), np.linspace(1.0, 3.0, 10)
 
@@ -151,7 +151,7 @@ def test_run_time_of_the_reduced_model_is_as_in_the_readme() -> None:
     assert seconds(lambda: reduced.peak_tilts(sizes, 0.2, rw.el_centro_1940(), scales)) / 100 < 0.001
 
 
-def test_default_settings_of_engines_are_those_of_the_table() -> None:
+def test_stated_default_settings_of_engines_match_the_table() -> None:
     table = pd.read_csv(PUBLISHED / "simulators" / "simulators.csv").set_index(["simulator", "settings"])
     readme = (CHECKOUT / "README.md").read_text()
     row = next(line for line in readme.splitlines() if "default settings" in line)
@@ -167,7 +167,7 @@ def test_default_settings_of_engines_are_those_of_the_table() -> None:
         assert (turn, tilt) == (f"{own['turn']:.2f}", f"{own['tilt']:.3f}")
 
 
-def test_halving_the_step_changes_ratios_as_the_guide_says() -> None:
+def test_guide_ratios_at_half_the_step_match_the_tables() -> None:
     coarse, fine = ratios_of("fragility/p695"), ratios_of("fragility/half-step")
     engines = {pair for pair in fine if any(each.startswith("mujoco") for each in pair)}
     # a median above the levels has a bound, and a ratio to it has none
@@ -188,7 +188,7 @@ def agreement(rows: pd.DataFrame, support: str, model: str, *, fixed: bool = Fal
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/start.md", "docs/index.md"])
-def test_traces_agree_for_as_long_as_pages_say(page: str, compared: pd.DataFrame) -> None:
+def test_stated_agreement_times_match_the_tables(page: str, compared: pd.DataFrame) -> None:
     text = words(page)
     (until,) = set(re.findall(r"for (\d+) s after uplift", text))
     recess = agreement(compared, "recess", "recess model")
@@ -206,7 +206,7 @@ def test_traces_agree_for_as_long_as_pages_say(page: str, compared: pd.DataFrame
         assert unstated(page, *said) == []
 
 
-def test_with_nothing_steered_the_two_agree_for_as_long_as_published(compared: pd.DataFrame) -> None:
+def test_stated_agreement_with_fixed_contact_load_matches_published_tables(compared: pd.DataFrame) -> None:
     ends = compared.set_index(["run", "reference"])["within_tolerance_until"]
     runs = [("recess", "recess model"), ("flat", "flat-ground model")]
     fixed, followed = (
@@ -218,7 +218,7 @@ def test_with_nothing_steered_the_two_agree_for_as_long_as_published(compared: p
     assert unstated("docs/guide/engines.md", more) == unstated("docs/guide/comparison.md", said) == []
 
 
-def test_commands_of_the_ensembles_are_those_of_their_manifests() -> None:
+def test_stated_ensemble_commands_match_their_manifests() -> None:
     stated = dict(re.findall(r"\[(\S+)\] \| `(rockwobble ensemble [^`]*)`", words(ENSEMBLES / "README.md")))
     assert sorted(stated) == sorted(path.parent.name for path in ENSEMBLES.glob("*/manifest.json"))
     for name, command in stated.items():
@@ -226,7 +226,7 @@ def test_commands_of_the_ensembles_are_those_of_their_manifests() -> None:
         assert f"{command} --out ensemble/{name}" == made.removesuffix(" --overwrite")
 
 
-def test_findings_of_the_ensembles_are_those_of_their_tables() -> None:
+def test_stated_ensemble_findings_match_their_tables() -> None:
     page = ENSEMBLES / "README.md"
     rows = {name: ratios_of(f"ensemble/{name}") for name in ("p695-2", "p695-3.5", "copies")}
     lines = {line.partition("]")[0]: line for line in words(page).split(" | [")}
@@ -258,7 +258,7 @@ def test_findings_of_the_ensembles_are_those_of_their_tables() -> None:
     assert unstated(page, *said) == []
 
 
-def test_the_limits_on_one_screen_are_the_published_ones() -> None:
+def test_summary_of_limits_matches_the_published_tables() -> None:
     loaded = Validity.load(PUBLISHED / "validity")
     number = limits_of(loaded.tables, loaded.structure).set_index(["limit", "number"])["value"]
 
@@ -293,7 +293,7 @@ def test_the_limits_on_one_screen_are_the_published_ones() -> None:
 
 
 @pytest.mark.parametrize("page", ["docs/guide/frames.md", "docs/published/frames.md"])
-def test_a_deck_is_a_larger_cylinder_by_what_the_guide_says(page: str) -> None:
+def test_guide_factor_of_deck_as_larger_cylinder_is_right(page: str) -> None:
     from benchmarks.decks import PIER, equivalent
 
     size = {ratio: f"{equivalent(ratio).semidiagonal / PIER.semidiagonal:.2f}" for ratio in (1.0, 4.0, 1e6)}
@@ -305,7 +305,7 @@ def test_a_deck_is_a_larger_cylinder_by_what_the_guide_says(page: str) -> None:
     assert unstated(page, size[1e6], shares) == []
 
 
-def test_the_page_of_certificates_counts_their_cases() -> None:
+def test_certificates_page_states_the_number_of_cases() -> None:
     folder = PUBLISHED / "certificates"
     made = [json.loads((folder / f"{name}.json").read_text("utf-8")) for name in ("reduced", "mujoco")]
     low, high = (len(each["fingerprint"]) for each in made)

@@ -36,7 +36,7 @@ def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.slow
-def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
+def test_compare_prints_summary_and_writes_files(folder, no_engines, monkeypatch, capsys):
     no_engines()
     monkeypatch.setattr(Page, "html", lambda _, **__: "")
     (folder / "results").mkdir()
@@ -56,9 +56,7 @@ def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     assert (folder / "results" / "mine.txt").read_text() == "mine"
 
 
-def test_an_engine_that_is_not_installed_is_left_out_with_a_note(
-    folder, no_engines, no_report, monkeypatch, capsys
-):
+def test_missing_engine_is_skipped_with_a_note(folder, no_engines, no_report, monkeypatch, capsys):
     no_engines()
     first, second = standard_engines()
     assert first == "mujoco"
@@ -86,7 +84,7 @@ def test_ctrl_c_is_one_line_and_nothing_written(folder, monkeypatch, capsys):
     assert not (folder / "rockwobble-compare").exists()
 
 
-def test_simulate_a_reduced_model(folder, in_this_process, capsys):
+def test_simulate_writes_the_trace_of_a_reduced_model(folder, in_this_process, capsys):
     assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
     captured = capsys.readouterr()
     assert "Peak tilt" in captured.out
@@ -102,7 +100,7 @@ def test_simulate_a_reduced_model(folder, in_this_process, capsys):
 
 
 @pytest.mark.slow
-def test_simulate_says_from_when_on_its_trace_is_one_of_many(folder, in_this_process, capsys):
+def test_simulate_states_the_divergence_time_of_copies(folder, in_this_process, capsys):
     slender = ["--semidiagonal", "6.0847320541999865", "--tan-alpha", "0.08996054265853794"]
     given = [*slender, "--scale", "1.28359029043245", "--support", "recess"]
     assert call("simulate", *given, "--rest-tilt", "1e-9") == 0
@@ -125,7 +123,7 @@ def result(*arguments: str) -> dict[str, Any]:
 
 
 @pytest.mark.slow
-def test_each_model_is_chosen_by_its_options(folder, in_this_process):
+def test_options_select_each_reduced_model(folder, in_this_process):
     release = ["--release-tilt-deg", "5", "--duration", "2"]
     spin = [*release, "--rolling-rate", "0.5"]
     recess, flat = result(*spin), result(*spin, "--support", "flat")
@@ -138,7 +136,7 @@ def test_each_model_is_chosen_by_its_options(folder, in_this_process):
 
 
 @pytest.mark.slow
-def test_a_cylinder_by_its_dimensions_is_the_same_cylinder(folder, in_this_process):
+def test_dimensions_and_ratios_give_one_cylinder(folder, in_this_process):
     # R = 5 m and tan alpha = 3/4, on the moon and on ice
     same = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "1"]
     same += ["--gravity", "1.62", "--friction", "0.1"]
@@ -210,7 +208,7 @@ def _alive(pid: int) -> bool:
     return Path(f"/proc/{pid}").exists()
 
 
-def test_a_crashed_run_is_one_line_and_exit_code_1(folder, in_this_process, monkeypatch, capsys):
+def test_crashed_run_gives_one_line_and_exit_code_1(folder, in_this_process, monkeypatch, capsys):
     def died(jobs: list[Job], **_: Any) -> list[Trace]:
         return [lost_trace(job.case, job.run, "status -11") for job in jobs]
 
@@ -227,7 +225,7 @@ def test_a_crashed_run_is_one_line_and_exit_code_1(folder, in_this_process, monk
 
 
 @pytest.mark.slow
-def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path, in_this_process, monkeypatch):
+def test_results_are_complete_if_terminal_output_fails(tmp_path, in_this_process, monkeypatch):
     words = ["simulate", "--release-tilt-deg", "5", "--duration", "1", "--out"]
     command = [sys.executable, "-m", "rockwobble", *words]
     poor = io.TextIOWrapper(io.BytesIO(), encoding="ascii")

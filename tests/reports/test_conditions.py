@@ -78,7 +78,7 @@ ASKED = [
 @pytest.mark.slow
 @pytest.mark.usefixtures("six_records")
 @pytest.mark.parametrize(("study", "options", "words"), ASKED)
-def test_a_page_states_them(
+def test_every_page_states_unusual_conditions(
     study: Callable[[dict[str, Any]], Results], options: dict[str, float], words: list[str]
 ) -> None:
     text = page_of(study({"gravity": 3.75, **options}).made_by("rockwobble")).markdown()
@@ -86,7 +86,7 @@ def test_a_page_states_them(
         assert each in text, each
 
 
-def test_conditions_are_stated_of_a_case_and_of_several_and_no_default_is() -> None:
+def test_only_nondefault_conditions_are_stated() -> None:
     for options, words in STATED.values():
         text = "\n".join(case_lines(case_of({"gravity": 3.75, **options}, MOTIONS[0])))
         assert [each for each in [*words, "3.75 m/s²"] if each not in text] == []

@@ -62,7 +62,7 @@ def damaged(fresh: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_it_is_refused_by_name_in_one_line_before_anything_runs(damaged, monkeypatch, capsys, command):
+def test_damaged_engine_is_refused_in_one_line_before_any_run(damaged, monkeypatch, capsys, command):
     for module in (execution, study):
         monkeypatch.setattr(module, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
     assert call(command, *COMMANDS[command], "--engine", "mujoco") == 2
@@ -71,7 +71,7 @@ def test_it_is_refused_by_name_in_one_line_before_anything_runs(damaged, monkeyp
     assert "Traceback" not in error
 
 
-def test_a_default_run_has_what_loads(damaged):
+def test_default_run_uses_engines_that_load(damaged):
     assert "mujoco" in available_engines()
     assert "mujoco" not in {run.engine for run in default_runs()}
     assert len(default_runs()) == 2 * len(registry.standard_engines()[1:])
@@ -79,7 +79,7 @@ def test_a_default_run_has_what_loads(damaged):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["compare", "ensemble", "view", "advise"])
-def test_a_command_without_an_engine_runs_what_loads_and_says_so(
+def test_command_without_engine_option_reports_the_substituted_engine(
     damaged, in_this_process, six_records, capsys, command
 ):
     other = registry.standard_engines()[1]
@@ -93,7 +93,7 @@ def test_a_command_without_an_engine_runs_what_loads_and_says_so(
 
 
 @pytest.mark.parametrize("command", ["compare", "view", "simulate"])
-def test_a_support_that_only_it_has_is_refused_for_it(damaged, monkeypatch, capsys, command):
+def test_support_of_a_damaged_engine_alone_is_refused(damaged, monkeypatch, capsys, command):
     monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
     engine = ("--engine", "mujoco") if command == "simulate" else ()
     assert call(command, *RELEASE, "--support", "ring", *engine) == 2
@@ -101,12 +101,12 @@ def test_a_support_that_only_it_has_is_refused_for_it(damaged, monkeypatch, caps
     assert [line for line in lines if "rockwobble: " in line] == [f"rockwobble: engine {LINE}"]
 
 
-def test_a_check_counts_what_it_could_not_check(damaged, capsys):
+def test_check_counts_unchecked_engines(damaged, capsys):
     call("check", "--only", "rest")
     assert REASON in " ".join(capsys.readouterr().out.split())
 
 
-def test_a_package_of_which_a_folder_is_left_does_not_load(fresh, tmp_path, monkeypatch):
+def test_leftover_folder_of_an_uninstalled_package_does_not_load(fresh, tmp_path, monkeypatch):
     # as `pip uninstall mujoco-core` leaves it: it can be imported, and holds nothing
     install(tmp_path, monkeypatch, "")
     assert "No module named" in registry.engine_fault("mujoco")
@@ -114,7 +114,7 @@ def test_a_package_of_which_a_folder_is_left_does_not_load(fresh, tmp_path, monk
         registry.find_engine("mujoco")
 
 
-def test_a_damaged_engine_stops_no_other(fresh, tmp_path, monkeypatch):
+def test_damaged_engine_does_not_affect_others(fresh, tmp_path, monkeypatch):
     install(tmp_path, monkeypatch, "raise RuntimeError")
     assert registry.engine_fault("mujoco").endswith(": RuntimeError")
     assert Run("mujoco", "recess") not in default_runs()

@@ -57,13 +57,13 @@ def made_up(factor: float = 1.1) -> Ensemble:
     return ensemble_of(pd.concat(members, ignore_index=True), about)
 
 
-def test_sizes_of_the_members_are_a_range():
+def test_member_sizes_are_stated_as_a_range():
     ensemble = made_up()
     facts = {**ensemble.facts, "semidiagonal": {"from": 2.0, "to": 9.0, "count": 3}}
     assert "R = 2 to 9 m," in page_of(dataclasses.replace(ensemble, facts=facts).made_by()).markdown()
 
 
-def test_the_page_is_the_golden_one():
+def test_page_matches_golden_file():
     # of ten the median is between the fifth and the sixth, of which 95 % exclude the largest two on each side
     is_golden(made_up())
 
@@ -89,7 +89,7 @@ def test_findings_state_the_verdict_and_the_numbers_of_each_main_pair():
     assert keys(made_up(1.001)) == {"equivalent", "pair", "significant", "overturning_alike"}
 
 
-def test_few_members_bound_nothing_and_failed_ones_bound_the_median():
+def test_too_few_members_give_no_interval_and_failed_ones_bounds():
     ensemble = made_up()
     few = ensemble.members[ensemble.members["member"].isin([f"record {i}" for i in range(1, 6)])]
     unsure = ensemble_of(few, ensemble.facts)
@@ -108,7 +108,7 @@ def test_few_members_bound_nothing_and_failed_ones_bound_the_median():
         assert ("ratio_most" in numbers(each, "pair")) == known
 
 
-def test_the_picture_marks_who_overturns_by_one_method_alone():
+def test_picture_marks_members_overturning_by_one_method_only():
     (picture,) = pictures(made_up(1.2))
     peaks, ratios = picture.panels
     curves = [layer for layer in peaks.layers if isinstance(layer, Line) and layer.steps]
@@ -120,7 +120,7 @@ def test_the_picture_marks_who_overturns_by_one_method_alone():
     assert [layer.text for layer in ratios.layers if isinstance(layer, Text)] == ["1"]
 
 
-def test_the_axis_of_ratios_is_as_long_on_both_sides():
+def test_ratio_axis_is_symmetric_about_1():
     low, high = ratio_span(np.log([1.2, 1.1, np.inf]))
     assert low < 1.0 / 1.2 < 1.2 < high == pytest.approx(1.0 / low)
     ticks = log_ticks(low, high)
@@ -129,7 +129,7 @@ def test_the_axis_of_ratios_is_as_long_on_both_sides():
     assert log_ticks(0.07, 14.0) == [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
 
 
-def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process, capsys):
+def test_small_ensemble_writes_files_and_redraws_its_page(tmp_path, in_this_process, capsys):
     assert call("ensemble", *RELEASE, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "Members: 3, perturbed copies, 1 %" in printed
@@ -146,7 +146,7 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
     }
 
 
-def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch, capsys):
+def test_synthetic_motions_are_the_members(tmp_path, in_this_process, monkeypatch, capsys):
     monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # of a page that is drawn the test above tells
     options = ["--synthetic", "2", "--peak", "1.5", "--duration", "2", "--engine", "none", "--seed", "7"]
     assert call("ensemble", *options, "--out", str(tmp_path)) == 0
@@ -155,7 +155,7 @@ def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch,
     assert sorted(set(table["member"])) == ["synthetic 7-1", "synthetic 7-2"]
 
 
-def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsys, monkeypatch):
+def test_missing_records_give_one_line_with_the_remedy(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(p695.importlib.util, "find_spec", lambda name: None)
     p695._far_field_pair.cache_clear()
     assert call("ensemble", "--p695", "--peak", "2", "--engine", "none", "--out", str(tmp_path / "out")) == 2
@@ -165,7 +165,7 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
     assert not (tmp_path / "out").exists()
 
 
-def test_a_suite_keeps_its_runs_beside_options(tmp_path, monkeypatch):
+def test_options_do_not_replace_the_runs_of_a_suite(tmp_path, monkeypatch):
     """As in `compare`: a time step goes to the runs that the file has, and adds none."""
     given: list[Run] = []
 

@@ -233,7 +233,7 @@ def complaints_of(solved: list[tuple[Problem, Trace, Trace]], runs: list[dict[st
 
 @pytest.mark.slow
 @needs_chromium
-def test_the_page_moves_as_the_reduced_models(solved, tmp_path: Path):
+def test_page_motion_matches_the_reduced_models(solved, tmp_path: Path):
     assert len({trace.outcome for _, trace, _ in solved}) == 2
     runs = on_the_page([each for each, _, _ in solved], tmp_path)
     assert complaints_of(solved, runs) == []
@@ -288,7 +288,7 @@ def test_a_wrong_term_in_explore_is_detected(broken, solved, tmp_path: Path):
 
 
 @needs_chromium
-def test_below_b_over_h_the_page_slides_as_the_sliding_model(tmp_path: Path):
+def test_page_matches_the_sliding_model_at_friction_below_b_over_h(tmp_path: Path):
     cask = Cylinder(semidiagonal=3.0, tan_alpha=0.5)
     records = [el_centro_1940(vertical=True), *synthetic_motions(2, peak=4.0, seed=SEED)]
     cases = [
@@ -318,7 +318,7 @@ def test_below_b_over_h_the_page_slides_as_the_sliding_model(tmp_path: Path):
 @needs_chromium
 @pytest.mark.slow
 @pytest.mark.parametrize("yielding", [0.0, 2.0, 3.0])
-def test_a_run_past_the_yield_of_its_tendon_is_no_answer(yielding: float, tmp_path: Path):
+def test_run_beyond_tendon_yield_has_no_result(yielding: float, tmp_path: Path):
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     tendon = Tendon(prestress=1.0, stiffness=4.0, yield_force=yielding or None)
     case = Case(pier, el_centro_1940().scaled(3.0), duration=12.0, tendon=tendon)

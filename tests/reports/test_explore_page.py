@@ -149,7 +149,7 @@ window.lookFurther = (found) => {
 
 @pytest.mark.slow
 @needs_chromium
-def test_too_little_friction_leaves_the_page_no_result(folder: Path) -> None:
+def test_page_gives_no_result_with_insufficient_friction(folder: Path) -> None:
     released = ["--release-tilt-deg", "5", "--support", "flat", "--overwrite"]
     wrong = {}
     for friction in (0.05, 1.4):
@@ -163,7 +163,7 @@ def test_too_little_friction_leaves_the_page_no_result(folder: Path) -> None:
 
 @pytest.mark.slow
 @needs_chromium
-def test_the_page_is_drawn_and_says_what_it_shows(folder: Path) -> None:
+def test_explore_page_is_drawn_with_legible_words(folder: Path) -> None:
     assert call() == 0
     page = (folder / "explore.html").read_text(encoding="utf-8")
     assert len(page.encode()) <= MOST
@@ -171,7 +171,7 @@ def test_the_page_is_drawn_and_says_what_it_shows(folder: Path) -> None:
     assert complaints(page, folder, figures=4, further=MOVED + LEGIBLE) == []
 
 
-def test_the_options_are_where_the_sliders_stand(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_sliders_start_at_the_given_options(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     size = ["--diameter", "0.5", "--height", "3", "--slab-mass-ratio", "1", "--rolling-resistance", "0.002"]
     record = ["--record-x", "EW.AT2", "--record-y", "NS.AT2", "--scale", "2"]
     assert call(*size, *record, "--support", "flat", "--out", "mine.html") == 0
@@ -187,7 +187,7 @@ def test_the_options_are_where_the_sliders_stand(folder: Path, capsys: pytest.Ca
     assert stated["python"] == "rw.read_record('EW.AT2', 'NS.AT2')"
 
 
-def test_a_release_and_a_plane_are_where_it_begins(folder: Path) -> None:
+def test_page_starts_with_the_given_release_and_plane(folder: Path) -> None:
     assert call("--release-tilt-deg", "4", "--rolling-rate", "0.3", "--duration", "7") == 0
     page_data = given(folder / "explore.html")
     assert (page_data["state"]["record"], page_data["state"]["rate"], page_data["free"]) == (-1, 0.3, 7.0)
@@ -197,7 +197,9 @@ def test_a_release_and_a_plane_are_where_it_begins(folder: Path) -> None:
     assert (state["support"], state["plane"]) == ("planar", pytest.approx(57.2957795))
 
 
-def test_a_page_of_other_options_is_not_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_page_written_with_other_options_is_not_overwritten(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert call() == 0
     assert call() == 0  # the same again
     assert call("--scale", "2") == 2

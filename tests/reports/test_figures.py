@@ -77,7 +77,7 @@ def words(content: bytes) -> str:
     )
 
 
-def test_svg_has_the_same_bytes_and_says_what_it_shows():
+def test_svg_is_reproducible_and_has_a_description():
     content = svg(lines())
     assert content == svg(lines())
     for said in ("time [s]", "tilt / α [-]", "run 0", "band", "strong", "until here", "a step of 0.0025 s"):
@@ -85,7 +85,7 @@ def test_svg_has_the_same_bytes_and_says_what_it_shows():
 
 
 @pytest.mark.parametrize(("width", "least", "most"), [(None, 8.0, 12.0), (89.0, 6.0, 8.0), (183.0, 6.0, 8.0)])
-def test_type_can_be_read_at_the_width_of_the_figure(width: float | None, least: float, most: float):
+def test_text_is_legible_at_figure_width(width: float | None, least: float, most: float):
     inches = width and width / 25.4  # [mm] in print, that of a screen by default
     drawn = figure(lines(columns=2), width=inches)
     sizes = [each.get_fontsize() for each in drawn.findobj(Words) if each.get_text()]
@@ -102,7 +102,7 @@ def test_legend_has_at_most_eight_entries_and_says_that_there_are_more():
     assert (len(page["legend"]), page["more"]) == (7, 7)
 
 
-def test_both_renderers_draw_the_same_numbers_thinned_to_what_can_be_seen():
+def test_both_renderers_draw_equally_thinned_data():
     (drawn,) = (each for each in drawn_on_a_page(lines(1))["layers"] if each.get("name") == "run 0")
     line = next(each for each in figure(lines(1)).axes[0].lines if each.get_label() == "run 0")
     for x, y in ((numbers(drawn["x"]), numbers(drawn["y"])), line.get_data()):
@@ -143,7 +143,7 @@ def test_cells_reach_from_edge_to_edge_on_a_logarithmic_axis():
     np.testing.assert_allclose(y, [-0.5, 0.5, 1.5])
 
 
-def test_contour_is_where_the_values_are():
+def test_contour_follows_its_level():
     x, y = np.linspace(0.0, 2.0, 41), np.linspace(0.0, 1.0, 21)
     at = contour(x, y, np.add.outer(y, x), 1.25)
     np.testing.assert_allclose(at[0] + at[1], 1.25, atol=1e-12)
@@ -151,12 +151,12 @@ def test_contour_is_where_the_values_are():
     assert len(contour(x, y, np.add.outer(y, x), 9.0)[0]) == 0
 
 
-def test_steps_of_a_distribution_count_those_without_a_value():
+def test_distribution_steps_count_members_without_a_value():
     x, share = ecdf(np.array([0.4, 0.1]), total=4, end=1.0)
     assert [*zip(x, share, strict=True)] == [(0.0, 0.0), (0.1, 0.25), (0.4, 0.5), (1.0, 0.5)]
 
 
-def test_bars_start_where_others_end():
+def test_stacked_bars_are_contiguous():
     places = np.zeros(1)
     bars = Bars(places=places, start=places + 0.4, end=places + 1.0, colours=["#000000"], texts=["1e-3"])
     panel = Panel(x=Axis(label="share", unit="-"), y=list_axis(["run"]), layers=[bars])
@@ -173,14 +173,14 @@ def test_axis_without_a_unit_is_refused():
         Axis(label="tilt", unit="")
 
 
-def test_page_elements_carry_their_picture_and_link_names():
+def test_page_elements_name_their_panel_and_linked_axis():
     ((title, element),) = charts(lines(link_x=True))
     assert title == ""
     assert 'id="lines-0"' in element
     assert '"link":"time [s]"' in element
 
 
-def test_trace_draws_itself():
+def test_trace_plot_shows_tilt_and_path():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     drawn = simulate(Case(pier, initial=release, duration=1.0)).plot()
@@ -190,7 +190,7 @@ def test_trace_draws_itself():
     assert np.hypot(*path.lines[1].get_data())[0] == pytest.approx(top_displacement(pier, release.tilt))
 
 
-def test_only_a_model_is_drawn_as_one_whatever_a_run_is_called() -> None:
+def test_model_style_depends_on_the_run_and_not_on_its_label() -> None:
     labels = ["recess model", "clay model", "recess model rtol=1e-06", "planar model plane=0.3"]
     styles = label_styles(labels, [label for label in labels if label != "clay model"])
     assert styles["recess model"] == Style(colour="#000000", dash="solid")

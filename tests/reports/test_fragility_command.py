@@ -44,7 +44,7 @@ def study() -> Fragility:
 
 
 @pytest.mark.slow
-def test_each_question_gets_its_pairs(study):
+def test_main_contrasts_are_grouped_by_question(study):
     pairs = {
         question: [f"{row['method']} / {row['against']}" for row in rows if row["cylinder"] == "pier"]
         for question, rows in main_contrasts(study).items()
@@ -65,7 +65,7 @@ def test_each_question_gets_its_pairs(study):
     }
 
 
-def test_a_pair_the_other_way_round_is_turned(study):
+def test_reversed_pairs_are_inverted(study):
     order = ["planar x", "recess model"]
     runs = pd.concat([study.runs[study.runs["method"] == name] for name in order])
     turned = main_contrasts(fragility_of(runs, study.points, study.facts))["planar"][0]
@@ -99,7 +99,7 @@ def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(study, tmp_path):
 
 
 @pytest.mark.slow
-def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
+def test_small_fragility_writes_files_and_redraws_its_page(tmp_path, capsys):
     cylinders = ["--cylinder", "pier=6,0.2", "--cylinder", "column=3,0.15"]
     assert call("fragility", *SMALL, *cylinders, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
@@ -121,7 +121,7 @@ def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_a_cloud_by_another_measure(tmp_path, capsys, monkeypatch):
+def test_cloud_uses_the_chosen_intensity_measure(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # of a page that is drawn the test above tells
     options = ["--synthetic", "8", "--scale", "3,6", "--measure", "pgv", "--model", "worse-plane"]
     assert call("fragility", *options, "--resamples", "20", "--workers", "1", "--out", str(tmp_path)) == 0
@@ -133,7 +133,7 @@ def test_a_cloud_by_another_measure(tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.slow
-def test_pages_of_scales_and_of_other_limits_alone() -> None:
+def test_pages_are_drawn_for_scales_and_without_an_overturning_limit() -> None:
     options: dict[str, Any] = {"methods": ["recess"], "resamples": 2, "workers": 1}
     motions = synthetic_motions(4, peak=1.0, seed=1)
     cloud = fragility(PIER, motions, scales=[2.0, 6.0], **options)
@@ -146,7 +146,7 @@ def test_pages_of_scales_and_of_other_limits_alone() -> None:
     assert pictures(lifted) == []
 
 
-def test_a_fragility_shows_itself(study, tmp_path):
+def test_fragility_has_repr_table_and_plot(study, tmp_path):
     shows_itself(study, "motions ", "runs ")
     loads_as_it_was(study, tmp_path)
 
@@ -167,7 +167,7 @@ def stripes_folder(folder: Path, levels: tuple[float, ...] = (2.0, 9.0)) -> Path
 
 
 @pytest.mark.slow
-def test_records_by_level_are_stripes_of_their_own(tmp_path: Path, capsys: Any) -> None:
+def test_records_by_level_form_separate_stripes(tmp_path: Path, capsys: Any) -> None:
     records = stripes_folder(tmp_path / "records")
     out = tmp_path / "out"
     small = ["--model", "recess", "--resamples", "40", "--workers", "1"]

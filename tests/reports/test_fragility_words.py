@@ -34,7 +34,7 @@ def with_contrasts(study: Fragility, table: pd.DataFrame) -> Fragility:
 
 
 @pytest.mark.slow
-def test_the_page_is_the_golden_one():
+def test_page_matches_golden_file():
     is_golden(made_up(("pier",)))
 
 
@@ -60,7 +60,7 @@ def numbers(study: Fragility, *keys: str) -> Numbers:
         ((1.2, 1.9), "different", 0.9),
     ],
 )
-def test_a_finding_calls_equivalent_what_its_table_does(study, ends, key, reach):
+def test_equivalence_in_findings_matches_the_contrast_table(study, ends, key, reach):
     ratio = Interval(value=1.0, low=ends[0], high=ends[1])
     row = {**ratio.columns("ratio"), "within": margin_of(ratio), "verdict": ratio.about_one(0.1)}
     pairs = numbers(
@@ -100,7 +100,7 @@ def test_too_few_motions_are_counted_without_a_curve(study):
 
 
 @pytest.mark.parametrize("factor", [1.0, 30.0, 1.0 / 30.0])
-def test_every_mark_of_a_ratio_lies_within_its_axis(study, factor):
+def test_ratio_marks_lie_within_the_axis(study, factor):
     scaled = [name for name in study.contrasts if name.startswith("ratio") and name != "ratio_p"]
     far = study.contrasts.assign(**{name: study.contrasts[name] * factor for name in scaled})
     ratios = next(p for p in pictures(with_contrasts(study, far)) if p.name == "fragility-ratios")
@@ -114,7 +114,7 @@ def test_every_mark_of_a_ratio_lies_within_its_axis(study, factor):
     assert marks > 3
 
 
-def test_one_method_is_not_asked_whether_it_agrees_and_states_its_median(study):
+def test_single_method_states_its_median_and_no_agreement(study):
     one = by_one_method(study)
     fit = study.fits.set_index(["cylinder", "method", "limit"]).loc["pier", "recess model", "overturned"]
     (median,) = numbers(one, "median", "equivalent", "different", "undecided")
@@ -173,7 +173,7 @@ def test_bounds_of_a_median_are_stated(kind: str, exceeded: int, reason: str) ->
 
 
 @pytest.mark.parametrize("total", [None, 0.45])
-def test_a_dispersion_that_was_given_for_the_curves_is_stated(total):
+def test_given_total_dispersion_is_stated(total):
     published = Fragility.load(Path(__file__).parents[2] / "reports" / "published" / "risk" / "p695")
     hazard = {**published.facts["hazard"], "total_dispersion": total}
     findings = dataclasses.replace(published, facts={**published.facts, "hazard": hazard}).findings()

@@ -19,7 +19,7 @@ RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "0.
 
 
 @pytest.mark.parametrize("name", ["advise", "compare", "ensemble", "fragility", "simulate", "view"])
-def test_every_command_of_a_cylinder_states_it_in_the_same_way(name: str) -> None:
+def test_cylinder_options_are_equal_in_all_commands(name: str) -> None:
     # type: ignore[attr-defined]
     assert {option.name for option in get_command(app).commands[name].params} >= BODY
 
@@ -32,14 +32,16 @@ def test_settings_are_whole_numbers_numbers_or_words() -> None:
 
 
 @pytest.mark.slow
-def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_auto_time_step_reports_the_remaining_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     method = ["--engine", "mujoco", "--time-step", "auto", "--set", "step_tolerance=1e-4"]
     assert call("simulate", *RELEASE, *method, "--out", str(tmp_path)) == 0
     assert "Until 0.2 s the tilt is within" in " ".join(capsys.readouterr().out.split())
     assert json.loads((tmp_path / "manifest.json").read_text())["about"]["result"]["error_estimate"] > 0.0
 
 
-def test_a_setting_goes_to_the_runs_that_know_it() -> None:
+def test_settings_apply_only_to_engines_that_have_them() -> None:
     # the release leans into the walls that a ring has by default
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
     case = Case(squat, initial=InitialState(0.3), duration=1.0, name="release")

@@ -114,13 +114,13 @@ def places() -> list[str]:
     return re.findall(r"^\| `(\S+)` \|", section, re.MULTILINE)
 
 
-def test_a_study_has_at_most_three_places() -> None:
+def test_new_study_needs_at_most_three_places() -> None:
     assert places() == list(STUDY)
     assert len(STUDY) <= MOST
 
 
 @pytest.mark.slow
-def test_a_study_in_these_places_runs_saves_loads_and_draws(tmp_path: Path) -> None:
+def test_study_added_at_the_documented_places_works(tmp_path: Path) -> None:
     def link(source: str, place: str) -> None:
         Path(place).symlink_to(Path(source).resolve())
 

@@ -18,7 +18,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_every_command_that_writes_knows_overwrite() -> None:
+def test_every_writing_command_has_an_overwrite_option() -> None:
     commands = get_command(app).commands  # type: ignore[attr-defined]
     options = {name: {each.name for each in command.params} for name, command in commands.items()}
     writing = {name for name, known in options.items() if known & {"out", "json", "junit"}}
@@ -59,7 +59,7 @@ def test_a_folder_of_another_plan_or_command_is_refused(
 
 
 @pytest.mark.slow
-def test_the_content_of_a_record_is_part_of_the_plan(tmp_path: Path) -> None:
+def test_changed_record_content_changes_the_plan_hash(tmp_path: Path) -> None:
     record, out = tmp_path / "x.csv", ("--out", str(tmp_path / "out"))
     given = ("simulate", "--record-x", str(record), "--record-y", "zero", "--units", "g", *out)
     for level, code in (("0.3", 0), ("0.3", 0), ("0.31", 2)):
@@ -70,7 +70,9 @@ def test_the_content_of_a_record_is_part_of_the_plan(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_file_that_is_no_report_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_file_not_written_by_the_command_is_not_replaced(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     check = ("check", "--only", "trace")
     for option, content in (("--json", "{}"), ("--junit", "<a/>")):
         path = tmp_path / f"mine{option}"

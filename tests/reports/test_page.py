@@ -27,7 +27,7 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 @pytest.mark.slow
-def test_page_is_whole_small_and_reproducible(comparison):
+def test_page_is_selfcontained_small_and_reproducible(comparison):
     made = comparison.made_by("rockwobble compare")
     files = page_of(made).files()
     assert set(files) == {"report.html", "report.md", "figure.svg"}
@@ -68,7 +68,7 @@ def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engin
 
 
 @pytest.mark.slow
-def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
+def test_runs_at_rest_and_failed_runs_can_be_drawn(no_engines):
     case, runs = Case(PIER, duration=1.0, name="still"), [Run("mujoco", "recess")]
     gained = (Diagnostic(code="energy_gain", time=0.5),)
     failed = {"outcome": "failed", "facts": gained, "peak_tilt": math.nan}
@@ -80,7 +80,7 @@ def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
 
 
 @pytest.mark.parametrize(("code", "reason"), [(code, each) for code in REASONS for each in REASONS[code]])
-def test_each_reason_has_words_and_others_are_refused(code, reason):
+def test_each_diagnostic_detail_has_words_and_unknown_ones_are_refused(code, reason):
     words, others = (
         sentence(Diagnostic(code=code, time=2.0, size=2.0, bound=1.0, detail=each))
         for each in (reason, next(each for each in REASONS[code] if each != reason))
@@ -91,7 +91,7 @@ def test_each_reason_has_words_and_others_are_refused(code, reason):
         Diagnostic(code=code, detail="because")
 
 
-def test_a_diagnostic_of_two_runs_is_said_once_and_failures_apart():
+def test_shared_diagnostics_are_merged_and_failures_listed_separately():
     slipped, gained = Diagnostic(code="slip", time=1.0), Diagnostic(code="energy_gain", time=2.0)
     assert remarks([slipped, slipped]) == f"{sentence(slipped)}; {sentence(slipped)}"
     assert failure([slipped, gained]) == sentence(gained)
@@ -101,7 +101,7 @@ def test_a_diagnostic_of_two_runs_is_said_once_and_failures_apart():
     assert run_diagnostics(view) == [f"a and b: {sentence(slipped)}."]
 
 
-def test_diagnostics_of_many_cases_count_each_run_that_did_not_fail():
+def test_diagnostic_counts_exclude_failed_runs():
     ends = {"outcome": ["stands", "stands", "failed"], "reference_outcome": "stands"}
     codes = ["slip, lift_off", "slip, lift_off", "slip"]
     rows = pd.DataFrame({"case": "El Centro", "run": ["a", "a", "b"], "diagnostics": codes, **ends})
@@ -111,7 +111,7 @@ def test_diagnostics_of_many_cases_count_each_run_that_did_not_fail():
 
 
 @pytest.mark.parametrize("reason", ["", "order"])
-def test_a_budget_that_is_not_split_states_no_numerics(reason):
+def test_unsplit_error_budget_states_no_numerical_part(reason):
     budget: Any = SimpleNamespace(not_split=reason, rms=lambda _: 1e-3, covered=1.6, steps=(2e-4, 1e-4))
     stated = dict(parts_finding(budget, "recess model").values)
     assert ("difference_numerics" in stated) == (not reason)
@@ -120,7 +120,7 @@ def test_a_budget_that_is_not_split_states_no_numerics(reason):
 
 
 @pytest.mark.parametrize("code", WORDS)
-def test_each_code_has_words_with_its_value(code: str) -> None:
+def test_each_diagnostic_code_is_worded_with_its_value(code: str) -> None:
     values = {"length_unit": (1e-2, 1e3)}.get(code, (0.905, 1.005))
     low, high = (Mistake(code=code, concerns="axes", value=value).words for value in values)
     assert "{" not in low + high

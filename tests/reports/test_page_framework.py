@@ -101,7 +101,7 @@ LACKS = {
 
 
 @pytest.mark.parametrize("output", SAYS)
-def test_each_output_says_the_same_as_far_as_it_has_room(page, output):
+def test_all_outputs_of_a_page_have_equal_content(page, output):
     files = page.files()
     assert set(files) == {"report.md", "report.html", "tilt.svg"}
     text = {
@@ -131,7 +131,7 @@ def random_table(random: np.random.Generator) -> Table:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_no_word_of_a_table_is_broken_in_a_terminal(seed: int) -> None:
+def test_tables_in_a_terminal_break_no_word(seed: int) -> None:
     random = np.random.default_rng(seed)
     for _ in range(4):
         table, width = random_table(random), int(random.integers(40, 121))
@@ -149,7 +149,7 @@ def test_no_word_of_a_table_is_broken_in_a_terminal(seed: int) -> None:
         assert bool(gone) == ("on the page" in printed)
 
 
-def test_headings_are_reached_and_folded_groups_open_one_by_one():
+def test_headings_are_linked_and_folds_open_separately():
     assert to_html("## Peak tilt, 3D").startswith('<h2 id="peak-tilt-3d">')
     table = Table(columns=[Column("name", "run", "words")], rows=ROWS, group="case", folded=True)
     assert table.html().count("<details><summary>") == 2
@@ -157,7 +157,7 @@ def test_headings_are_reached_and_folded_groups_open_one_by_one():
 
 @pytest.mark.slow
 @needs_chromium
-def test_nobody_stumbles_over_the_page(page, tmp_path):
+def test_page_has_no_browser_complaints(page, tmp_path):
     assert complaints(page.html(), tmp_path, figures=1) == []
 
 
@@ -180,7 +180,7 @@ NUMBERS = {
 }
 
 
-def test_numbers_in_words():
+def test_number_formats_give_the_expected_text():
     assert {given: number(*given) for given in NUMBERS} == NUMBERS
 
 
@@ -188,7 +188,7 @@ def test_numbers_in_words():
 @pytest.mark.parametrize(
     "columns", ["--scale 2", "--out '/a long/name of a folder.d' --engine none --friction 0.5"]
 )
-def test_a_command_of_a_page_is_copied_whole(columns, width):
+def test_commands_on_a_page_are_copyable_in_one_piece(columns, width):
     command = f"rockwobble advise --record-x 'E W.AT2' --diameter 1.6 --height 9 {columns}"
     page = Page(name="test", template="test", values={})
     text = (

@@ -31,7 +31,7 @@ def comparison():
     return rw.comparison(case, runs=[Run("mujoco", "flat", 1e-3)], workers=1)
 
 
-def test_the_page_draws_the_mass_centre_of_the_run(comparison):
+def test_playback_data_reproduce_the_mass_centre(comparison):
     spec = playback(case_views(comparison)[0])
     b, h = spec["base_radius"], 0.5 * spec["height"]
     assert spec["models"][spec["partners"][0]]["label"] == "flat-ground model"  # the model of its support
@@ -83,7 +83,7 @@ def test_playback_shows_no_fall_where_a_tendon_recentres():
     assert _reach(view) == pytest.approx(1.08 * beside / PIER.base_radius, rel=1e-12)
 
 
-def test_nothing_is_played_where_nothing_moves(tmp_path, monkeypatch, capsys):
+def test_playback_refuses_cases_at_rest(tmp_path, monkeypatch, capsys):
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
     made = rw.comparison(Case(PIER, still, name="still"), runs=RECESS, workers=1)
     assert playback(case_views(made)[0]) is None
@@ -97,7 +97,7 @@ def test_nothing_is_played_where_nothing_moves(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.slow
-def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):
+def test_stored_results_are_played_and_redrawn_without_new_runs(comparison, tmp_path, monkeypatch, capsys):
     stored = tmp_path / "stored"
     comparison.save(stored)
 

@@ -63,7 +63,9 @@ def test_a_damaged_table_is_a_fault(remake: dict[str, Any], copy: Path, tmp_path
 
 
 @pytest.mark.slow
-def test_only_numbers_that_tables_lack_are_faults(remake: dict[str, Any], copy: Path, tmp_path: Path) -> None:
+def test_page_numbers_missing_from_tables_are_faults(
+    remake: dict[str, Any], copy: Path, tmp_path: Path
+) -> None:
     page = page_of(copy)
     page.write_text(page.read_text() + "\nA sentence of yesterday.\n")
     assert remake["faults"](tmp_path) == []
@@ -71,7 +73,7 @@ def test_only_numbers_that_tables_lack_are_faults(remake: dict[str, Any], copy: 
     assert any("its page says 0.98765" in row for row in remake["faults"](tmp_path))
 
 
-def test_results_that_nothing_draws_or_nobody_committed_are_faults(
+def test_undrawn_or_uncommitted_results_are_faults(
     remake: dict[str, Any], copy: Path, tmp_path: Path
 ) -> None:
     path = copy / "manifest.json"
@@ -83,7 +85,7 @@ def test_results_that_nothing_draws_or_nobody_committed_are_faults(
     assert "draws such results" in words
 
 
-def test_a_headline_that_its_table_does_not_bear_out_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_headline_contradicting_its_table_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
     real = headlines.headline
     monkeypatch.setattr(headlines, "headline", lambda name: real(name).replace("1.000", "1.001"))
     (fault,) = headlines.faults()
@@ -127,7 +129,7 @@ def test_the_guide_states_the_needs_of_the_published_limits() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["reduced", "mujoco"])
-def test_the_code_still_does_what_it_did_then(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_published_certificates_still_verify(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["verify", str(PUBLISHED / "certificates" / f"{name}.json"), "--json"])
     assert json.loads(capsys.readouterr().out)["findings"][0]["level"] == "satisfied"

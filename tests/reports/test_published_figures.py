@@ -41,7 +41,7 @@ def numbers_of(axis: Axis) -> list[Text]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["ensemble/p695-2", "fragility/p695", "risk/tendon", "validity"])
-def test_no_words_are_cut_and_no_titles_or_numbers_collide(name: str) -> None:
+def test_published_figures_have_no_cut_or_overlapping_text(name: str) -> None:
     kind = read_manifests(PUBLISHED / name)[0].kind
     for picture in stored_page(kind, PUBLISHED / name).pictures:
         drawn = figure(picture)

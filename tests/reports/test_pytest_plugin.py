@@ -61,7 +61,7 @@ def test_each_case_and_run_is_an_item_that_passes(suite) -> None:
     suite().runpytest("-W", "error").assert_outcomes(passed=4)
 
 
-def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite, in_this_process) -> None:
+def test_exceeded_bounds_fail_with_the_error_budget(suite, in_this_process) -> None:
     # flat ground moves by another model, which shows on a squat cylinder at once
     pytester = suite(bounded('tilt_rms = 1e-5\nagreement_time = 0.8\nreference = "recess"'))
     result = pytester.runpytest("-k", "alpha and not 0.2", "-W", "error")
@@ -74,7 +74,7 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite, in_
     assert "Error" not in result.stdout.str()
 
 
-def test_the_budget_can_be_left_out(suite) -> None:
+def test_error_budget_can_be_omitted(suite) -> None:
     pytester = suite(bounded("tilt_rms = 1e-12"))
     result = pytester.runpytest("-k", "0.2 and recess", "--no-rockwobble-budget")
     result.assert_outcomes(failed=1)
@@ -82,7 +82,7 @@ def test_the_budget_can_be_left_out(suite) -> None:
     result.stdout.fnmatch_lines(["*tilt_rms: *at most 1e-12*"])
 
 
-def test_a_run_that_fails_says_why(suite) -> None:
+def test_failed_engine_run_states_its_reason(suite) -> None:
     text = SUITE.replace('support = ["recess", "flat"]', "settings = { contact_damping_ratio = 0.01 }")
     result = suite(text).runpytest("-k", "0.2")
     result.assert_outcomes(failed=1)
@@ -90,7 +90,7 @@ def test_a_run_that_fails_says_why(suite) -> None:
 
 
 @pytest.mark.slow
-def test_a_wrong_file_or_setting_is_an_error_of_its_own(suite) -> None:
+def test_bad_suite_file_or_setting_is_reported_as_an_error(suite) -> None:
     result = suite("[[cases]]\nname = 'x'\n").runpytest()
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines(["pier.suite.toml: cases[[]0].cylinder: must be given"])
@@ -100,12 +100,12 @@ def test_a_wrong_file_or_setting_is_an_error_of_its_own(suite) -> None:
     result.stdout.fnmatch_lines(["pier.suite.toml: 'softness' is not a setting of mujoco*"])
 
 
-def test_an_engine_that_is_missing_is_skipped(suite, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_suite_item_of_a_missing_engine_is_skipped(suite, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rockwobble.compare.runs.choice.engine_fault", lambda name: "is not here")
     suite().runpytest().assert_outcomes(skipped=4)
 
 
-def test_other_files_are_left_alone_and_the_plugin_can_be(suite) -> None:
+def test_plugin_ignores_other_files_and_can_be_disabled(suite) -> None:
     pytester = suite()
     pytester.path.joinpath("other.toml").write_text("a = 1")
     assert pytester.runpytest("-p", "no:rockwobble").ret == pytest.ExitCode.NO_TESTS_COLLECTED

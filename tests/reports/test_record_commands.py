@@ -52,7 +52,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         *((command, "damaged.csv") for command in COMMANDS if command != "simulate"),
     ],
 )
-def test_a_bad_file_is_one_line_and_leaves_nothing(
+def test_bad_record_gives_one_line_and_no_output(
     folder: Path, capsys: pytest.CaptureFixture[str], command: str, name: str
 ) -> None:
     before = sorted(folder.iterdir())
@@ -67,7 +67,7 @@ def test_a_bad_file_is_one_line_and_leaves_nothing(
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_a_bad_file_of_a_folder_of_records_is_one_line(
+def test_bad_record_in_a_folder_gives_one_line(
     folder: Path, capsys: pytest.CaptureFixture[str], name: str
 ) -> None:
     Path("records.csv").write_text(f"name,record\nfirst,good.csv\nsecond,{name}\n")
@@ -81,7 +81,7 @@ def test_a_bad_file_of_a_folder_of_records_is_one_line(
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("folder")
-def test_a_check_of_a_suite_states_its_records(capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_of_a_suite_states_its_record_sources(capsys: pytest.CaptureFixture[str]) -> None:
     Path("a.suite.toml").write_text(
         '[[runs]]\nengine = "mujoco"\nsupport = "recess"\n[[cases]]\nname = "pier"\n'
         'cylinder = { semidiagonal = 6.0, tan_alpha = 0.2 }\nmotion = { files = "good.csv" }\n'
@@ -93,7 +93,7 @@ def test_a_check_of_a_suite_states_its_records(capsys: pytest.CaptureFixture[str
 
 @pytest.mark.parametrize("command", ["compare", "simulate", "explore", "sweep"])
 @pytest.mark.usefixtures("folder", "in_this_process")
-def test_a_good_file_is_stated_in_the_same_words(
+def test_all_commands_describe_a_record_in_equal_words(
     capsys: pytest.CaptureFixture[str],
     no_engines: Callable[..., None],
     monkeypatch: pytest.MonkeyPatch,

@@ -44,7 +44,7 @@ def test_the_first_sources_are_listed_and_the_others_counted(count: int, last: s
     assert (len(lines), lines[-1]) == (count, last)
 
 
-def test_a_suite_gives_each_option_to_the_reader(tmp_path: Path, record: Path) -> None:
+def test_suite_passes_each_reading_option_to_read_record(tmp_path: Path, record: Path) -> None:
     silent = tmp_path / "silent.txt"
     silent.write_text("".join(f"{STEP * at:.2f} {at % 5} {at % 7}\n" for at in range(COUNT)))
     for key, (option, value) in KEYS.items():
@@ -67,7 +67,7 @@ def test_a_suite_gives_each_option_to_the_reader(tmp_path: Path, record: Path) -
         assert case.motion.source == due.source
 
 
-def test_stored_results_keep_it(tmp_path: Path, record: Path) -> None:
+def test_stored_results_keep_the_record_source(tmp_path: Path, record: Path) -> None:
     motion = read_record(record).scaled(2.0).rotated(0.3)
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), motion, name="shaken", duration=0.4)
     assert motion.source is not None
@@ -95,7 +95,7 @@ def test_stored_results_keep_it(tmp_path: Path, record: Path) -> None:
     ids=lambda value: value[0] if isinstance(value, list) else value,
 )
 @pytest.mark.usefixtures("in_this_process")
-def test_pages_have_it_when_made_and_when_drawn_again(
+def test_new_and_redrawn_pages_state_the_record_source(
     tmp_path: Path, record: Path, capsys: pytest.CaptureFixture[str], command: list[str], page: str
 ) -> None:
     line = str(read_record(record).source)

@@ -15,7 +15,7 @@ from rockwobble.reports.registry import COMMANDS, ENTRIES, HEADINGS, KINDS
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_kind_finds_its_class_and_its_page(kind: str) -> None:
+def test_each_kind_has_a_results_class_and_a_page(kind: str) -> None:
     made = KINDS[kind].results_class()
     assert made.kind == kind
     name = f"rockwobble.reports.pages.{KINDS[kind].name}"
@@ -41,7 +41,7 @@ def test_registry_names_are_unique_and_groups_in_heading_order() -> None:
 
 
 @pytest.mark.slow
-def test_all_results_of_the_package_are_in_the_list() -> None:
+def test_registry_lists_every_results_class() -> None:
     assert all(entry.results_class() for entry in KINDS.values())
     below = [Results]
     for each in below:
@@ -49,6 +49,6 @@ def test_all_results_of_the_package_are_in_the_list() -> None:
     assert {each.kind for each in below[1:] if each.__module__.startswith("rockwobble.")} == {*KINDS}
 
 
-def test_results_without_figures_say_so() -> None:
+def test_plotting_results_without_figures_is_refused() -> None:
     with pytest.raises(ValueError, match="there is nothing to draw of"):
         Checks.of([not_run("a case", "nothing moves")], seconds=0.0).plot()

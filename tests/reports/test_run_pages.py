@@ -57,18 +57,18 @@ def swept() -> dict[str, rs.Sweep]:
 
 
 @pytest.mark.slow
-def test_the_page_of_a_run_is_the_golden_one():
+def test_run_page_matches_golden_file():
     trace = rw.simulate(rw.Case(PIER, rw.el_centro_1940(), duration=15.0))
     error = PeakError(2.5e-3, "model form")
     single = {"copies_part": 9.0, "answer": "rockwobble ensemble", "scatter": 0.02, "error": error}
     is_golden(single_run_of(dataclasses.replace(trace, wall_time=0.01), single))
 
 
-def test_the_page_of_a_sweep_is_the_golden_one(swept):
+def test_sweep_page_matches_golden_file(swept):
     is_golden(swept["grid"])
 
 
-def test_a_run_says_what_its_method_gives_and_no_more():
+def test_run_page_states_only_quantities_of_its_method():
     of_model = sizes(run_of(rw.Case(PIER, rw.el_centro_1940(), duration=15.0), rw.Run(None, "recess")))
     # the swing that is followed past the end makes no demand that is known
     assert of_model["friction"]["reason"] == of_model["moment"]["reason"] == "until_the_end"
@@ -81,7 +81,7 @@ def test_a_run_says_what_its_method_gives_and_no_more():
     assert not {"uplift", "wall_contact", "friction", "moment", "closest"} & set(engine)
 
 
-def test_a_model_at_rest_says_where_its_base_slides():
+def test_run_at_rest_states_whether_its_base_slides():
     weak = rw.el_centro_1940().scaled(0.3)
     for friction, slides in ((0.5, False), (0.05, True)):
         run = run_of(rw.Case(PIER, weak, friction=friction, duration=15.0), rw.Run(None, "recess"))
@@ -90,14 +90,14 @@ def test_a_model_at_rest_says_where_its_base_slides():
         assert ("mode.walls" in keys(run)) == slides
 
 
-def test_a_planar_run_says_in_which_plane_and_with_what_loss():
+def test_planar_run_states_its_plane_and_restitution():
     shaken = rw.Case(PIER, rw.el_centro_1940(), duration=6.0)
     said = sizes(run_of(shaken, rw.Run(None, "recess", plane=-4.0, restitution=0.95)))
     assert (said["plane"]["angle"], said["restitution"]["detail"]) == (-4.0, "0.95")
     assert said["uplift"]["angle"] == pytest.approx(2.0 * math.pi - 4.0)
 
 
-def test_a_run_that_falls_after_its_end_says_over_what():
+def test_overturning_after_the_end_states_both_times():
     cut = rw.Case(
         rw.Cylinder(semidiagonal=2.9744, tan_alpha=0.2), rw.el_centro_1940().scaled(1.909), duration=3.93
     )
@@ -105,7 +105,7 @@ def test_a_run_that_falls_after_its_end_says_over_what():
     assert end["time"] > end["time_still"] == 3.93
 
 
-def test_a_run_that_fails_or_falls_says_so():
+def test_failed_and_overturned_runs_are_stated():
     fallen = run_of(rw.Case(PIER, rw.el_centro_1940().scaled(5.0)), rw.Run(None, "recess"))
     assert "run.falls" in keys(fallen)
     # what is asked until it falls, not in the fall
@@ -122,7 +122,7 @@ def test_a_run_that_fails_or_falls_says_so():
         (6.0, 0.9, "run.falls_from_any_tilt", None),
     ],
 )
-def test_a_fall_passes_the_balance_which_a_tendon_moves(stiffness, share, key, mark):
+def test_overturning_time_uses_the_balance_tilt_with_tendon(stiffness, share, key, mark):
     tendon = rw.Tendon(stiffness=stiffness) if stiffness else None
     case = rw.Case(PIER, duration=3.0, tendon=tendon)
     release = rw.InitialState(share * balance_of(case), tilt_rate=1.0 if stiffness < 6.0 else 3.0)
@@ -138,7 +138,7 @@ def test_a_fall_passes_the_balance_which_a_tendon_moves(stiffness, share, key, m
         assert tilts[0] <= balance_of(case) < tilts[1]
 
 
-def test_an_axis_shows_what_a_tendon_brings_back():
+def test_tilt_axis_includes_tilts_recentred_by_a_tendon():
     case = rw.Case(
         PIER, initial=rw.InitialState(1.6 * PIER.alpha), duration=1.0, tendon=rw.Tendon(stiffness=2.0)
     )
@@ -148,14 +148,14 @@ def test_an_axis_shows_what_a_tendon_brings_back():
     assert high == pytest.approx(1.5 * balance_of(case) / PIER.alpha, rel=1e-15)
 
 
-def test_a_run_that_its_rounding_decides_is_undecided():
+def test_run_decided_by_rounding_is_undecided():
     trace = rw.simulate(RELEASE)
     end = dataclasses.replace(trace, outcome="undecided", peak_tilt=math.nan)
     assert [each.key for each in single_run_of(end).findings().of("run")] == ["run.undecided"]
 
 
 @pytest.mark.parametrize(("part", "before"), [(0.01, "before_largest_tilt"), (9.0, None), (math.inf, "none")])
-def test_a_single_trace_is_doubted_from_when_its_copies_spread(part, before):
+def test_trace_is_unreliable_once_its_copies_diverge(part, before):
     trace = single_run_of(rw.simulate(rw.Case(PIER, rw.el_centro_1940(), duration=3.0))).made_by()
     single = {"copies_part": part, "perturbation": 0.01, "answer": "rockwobble ensemble"}
     spread = dataclasses.replace(trace, facts={**trace.facts, "single_trace": single})
@@ -164,7 +164,7 @@ def test_a_single_trace_is_doubted_from_when_its_copies_spread(part, before):
     assert ("Distribution: `rockwobble ensemble`" in page_of(spread).markdown()) == bool(doubts)
 
 
-def test_a_sweep_of_cases_counts_runs_and_how_they_end(swept):
+def test_sweep_of_cases_counts_runs_by_outcome(swept):
     cases, ended = swept["cases"].findings()
     assert cases.values == {"runs": 4, "count": 2, "count_of_each": 2}
     assert ended.values["count_stands"] == 4
@@ -193,7 +193,7 @@ def test_a_map_has_a_cell_per_run_or_states_the_number(monkeypatch):
     assert picture.caption.values == {"names": ("El Centro 1940",), **left_out}
 
 
-def test_axes_are_thinned_by_need_and_uneven_or_close_sizes_told_apart():
+def test_map_axes_are_thinned_with_distinct_labels_for_close_sizes():
     counts = [(21_000, 2), (2, 21_000), (1_000, 1_000), (141, 141)]
     assert [figure._step(*each) for each in counts] == [3, 1, 8, 1]
     places, axis = figure._axis(np.array([*range(1, 14), 80.0, 200.0]), "R", "m")
@@ -214,7 +214,7 @@ def test_axes_are_thinned_by_need_and_uneven_or_close_sizes_told_apart():
         "sweep --semidiagonal 1,6 --scale 0.3,2 --workers 1",
     ],
 )
-def test_a_stored_folder_draws_its_pages_again(tmp_path, capsys, command):
+def test_stored_folder_redraws_identical_pages(tmp_path, capsys, command):
     made = tmp_path / "made"
     assert call(*command.split(), "--out", str(made)) == 0
     before = {path.name: path.read_bytes() for path in made.glob("*.*")}

@@ -47,7 +47,7 @@ def described(folder: Path, capsys, code: int = 0) -> list[dict]:
 
 
 @pytest.mark.usefixtures("nothing_runs")
-def test_show_says_what_is_there_and_what_made_it(stored, capsys):
+def test_show_lists_results_with_command_and_versions(stored, capsys):
     (result,) = described(stored, capsys)
     assert (result["kind"], result["complete"]) == ("comparison", True)
     assert result["headline"]["rows"] == len(Comparison.load(stored).summary)
@@ -61,7 +61,7 @@ def test_show_says_what_is_there_and_what_made_it(stored, capsys):
 
 @pytest.mark.usefixtures("nothing_runs")
 @pytest.mark.parametrize("folder", ["validity", "risk/p695", "ensemble/copies"])
-def test_eighty_columns_hold_what_show_prints(folder, capsys, monkeypatch):
+def test_show_output_fits_80_columns(folder, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     store = PUBLISHED / folder
     assert call("show", str(store)) == 0
@@ -84,7 +84,7 @@ def test_show_names_a_damaged_file_and_fails(tmp_path, capsys):
     assert error.count("\n") == 1
 
 
-def test_show_says_how_far_it_is_and_nothing_when_it_is_done(tmp_path, capsys):
+def test_show_states_progress_of_unfinished_results_only(tmp_path, capsys):
     def interrupt(event):
         if event.state == "finished":
             raise KeyboardInterrupt

@@ -29,12 +29,12 @@ def comparison() -> rw.Comparison:
     return rw.comparison(suite, runs=[rw.Run(None, "flat")], reference=rw.Run(None, "recess"), workers=1)
 
 
-def test_trace_shows_itself():
+def test_trace_has_repr_table_and_plot():
     shows_itself(rw.simulate(RELEASE), "recess model", "stands at 1 s")
 
 
 @pytest.mark.slow
-def test_comparison_shows_itself_case_by_case(comparison, tmp_path):
+def test_comparison_has_repr_table_and_plot_per_case(comparison, tmp_path):
     shows_itself(comparison, "cases 2")
     loads_as_it_was(comparison, tmp_path)
     first, second = comparison.plot(), comparison.plot("lighter")
@@ -42,7 +42,7 @@ def test_comparison_shows_itself_case_by_case(comparison, tmp_path):
     assert not np.array_equal(*(each.axes[0].lines[0].get_ydata() for each in (first, second)))
 
 
-def test_ensembles_and_sweeps_show_themselves(tmp_path):
+def test_ensembles_and_sweeps_have_repr_table_and_plot(tmp_path):
     grid = rs.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
     for ensemble, *facts in (
         (rw.ensemble(RELEASE, runs=[], copies=4, workers=1), "4, perturbed copies", "overturned 0 of 8"),
@@ -54,7 +54,7 @@ def test_ensembles_and_sweeps_show_themselves(tmp_path):
 
 
 @pytest.mark.slow
-def test_budgets_and_external_trajectories_load_as_they_were(tmp_path):
+def test_error_budgets_and_external_trajectories_survive_save_and_load(tmp_path):
     external = tmp_path / "mine.csv"
     trace = rw.simulate(RELEASE)
     pd.DataFrame({"time [s]": trace.time, "tilt [rad]": trace.tilt}).to_csv(external, index=False)
@@ -65,7 +65,7 @@ def test_budgets_and_external_trajectories_load_as_they_were(tmp_path):
     loads_as_it_was(View.of(made, RELEASE.name), tmp_path / "view")
 
 
-def test_a_run_loads_as_it_was(tmp_path):
+def test_single_run_survives_save_and_load(tmp_path):
     tied = rw.Case(
         rw.WobblingFrame(PIER), initial=RELEASE.initial, duration=0.2, tendon=rw.Tendon(prestress=0.1)
     )
@@ -73,7 +73,7 @@ def test_a_run_loads_as_it_was(tmp_path):
         loads_as_it_was(single_run(case, run), tmp_path / case.name)
 
 
-def test_facts_that_would_load_as_another_value_are_not_saved(tmp_path):
+def test_facts_that_would_not_survive_loading_are_refused(tmp_path):
     made = rw.sweep([RELEASE], workers=1)
     for facts, named in (({"steps": (1, 2)}, "steps, tuple"), ({"order": np.float64(2.0)}, "order, float64")):
         with pytest.raises(TypeError, match=f"got facts.{named}"):
@@ -81,7 +81,7 @@ def test_facts_that_would_load_as_another_value_are_not_saved(tmp_path):
     assert not [*tmp_path.iterdir()]
 
 
-def test_values_are_a_line(comparison):
+def test_value_classes_have_a_one_line_repr(comparison):
     trace, *_ = comparison.traces.values()
     engine = rw.simulate(RELEASE, engine="mujoco", time_step=1e-3)
     pair = make_pair(PIER, trace, trace)
@@ -116,7 +116,7 @@ def test_values_are_a_line(comparison):
     assert "99 items" in repr(values[8])
 
 
-def test_a_line_says_of_what_is_long_how_much_there_is():
+def test_repr_states_the_size_of_long_fields():
     @dataclass(repr=False)
     class Made(CompactRepr):
         share: float

@@ -38,7 +38,7 @@ TABLES = {"spectrum", "record", "lowest", "gaps", "contrast", "checked"}
 
 
 @pytest.mark.slow
-def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, capsys):
+def test_spectrum_command_prints_writes_and_redraws_its_results(tmp_path: Path, capsys):
     (tmp_path / "kept.txt").write_text("mine")
     coarse = ["--search-step", "0.4", "--probes", "3"]
     assert call(*SMALL, *coarse, "--tan-alpha", "0.2", "--out", str(tmp_path)) == 0
@@ -60,7 +60,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
 
 
 @pytest.mark.slow
-def test_any_record_will_do(tmp_path: Path, monkeypatch):
+def test_spectrum_command_accepts_any_record(tmp_path: Path, monkeypatch):
     monkeypatch.setattr(Page, "files", lambda _, **__: {})  # of one that is drawn other tests tell
     time = np.arange(0.0, 3.0, 0.02)
     for name, phase in (("x.csv", 0.0), ("y.csv", 1.0)):
@@ -84,7 +84,7 @@ def spectrum() -> TiltMaps:
 
 
 @pytest.mark.slow
-def test_the_page_is_the_golden_one():
+def test_page_matches_golden_file():
     levels = {"semidiagonals": [1.0, 20.0], "intensities": [0.9, 4.0]}
     is_golden(rw.spectrum(0.1, el_centro_1940(), **levels, search_step=0.2, probes=9, workers=1))
 
@@ -105,7 +105,7 @@ def numbers(maps: TiltMaps, checked: pd.DataFrame | None = None, **columns: obje
     }
 
 
-def test_the_answer_counts_what_is_missed_and_leaves_failed_cells_out(spectrum):
+def test_headline_counts_missed_overturning_without_failed_cells(spectrum):
     falls = {name: spectrum.overturned(name) for name in SERIES}
     planar = falls["planar_x"] | falls["planar_y"]
     shares = (falls[SPATIAL] & ~planar).mean(), (planar & ~falls[SPATIAL]).mean()
@@ -121,7 +121,7 @@ def test_the_answer_counts_what_is_missed_and_leaves_failed_cells_out(spectrum):
     assert [*numbers(dataclasses.replace(spectrum, peak_tilt=every))] == ["unsolved"]
 
 
-def test_bands_of_sizes_in_which_planar_analysis_is_unconservative_are_listed(spectrum):
+def test_size_bands_where_planar_analysis_is_unconservative_are_listed(spectrum):
     bands = planar_contrast(spectrum).iloc[:-1]
     wrong = bands[bands["unconservative"] > bands["conservative"]]
     assert 0 < len(wrong) < len(bands)
@@ -149,14 +149,14 @@ def with_safe(maps: TiltMaps, cells: list[tuple[int, int]]) -> TiltMaps:
     return dataclasses.replace(maps, peak_tilt=peaks, lowest=lowest)
 
 
-def test_gaps_are_counted_and_the_widest_is_spanned(spectrum):
+def test_gaps_are_counted_with_the_range_of_the_widest(spectrum):
     stated = ("count", "count_sizes", "count_all", "intensity", "intensity_end")
     for cells, count, end in (([(2, 5)], 1, 6.0), ([(2, 5), (2, 6), (4, 8)], 2, 7.0)):
         gaps = numbers(with_safe(spectrum, cells))["gaps"]
         assert [gaps[name] for name in stated] == [count, count, 12, 6.0, end]
 
 
-def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
+def test_search_finding_states_missed_windows_and_sensitive_cells(spectrum):
     none = dataclasses.replace(spectrum, below={name: np.zeros(12) for name in SERIES})
     count = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
     values = numbers(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
@@ -170,14 +170,14 @@ def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
     assert (chance["count"], chance["length"], chance["length_end"]) == (2, *spectrum.semidiagonals[[0, 3]])
 
 
-def test_the_check_tells_chance_from_error(spectrum):
+def test_verification_distinguishes_sensitive_from_wrong_cells(spectrum):
     cells = pd.DataFrame({"agrees": [True, False, False], "sensitive": [False, True, False]})
     values = numbers(spectrum, cells)["checked"]
     assert [values[f"count{name}"] for name in ("", "_agree", "_chance", "_other")] == [3, 1, 1, 1]
 
 
 @pytest.mark.slow
-def test_the_picture_is_small_and_says_why_a_cell_has_no_tilt(spectrum):
+def test_picture_is_small_and_explains_empty_cells(spectrum):
     picture = picture_of(spectrum)
     assert len(svg(picture)) < SVG_LIMIT
     space = next(layer for layer in picture.panels[0].layers if isinstance(layer, Heat))

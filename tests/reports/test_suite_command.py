@@ -54,7 +54,7 @@ RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2"
 
 
 @pytest.mark.slow
-def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys):
+def test_suite_is_echoed_run_summarised_and_written(folder, no_engines, capsys):
     no_engines()
     assert call("compare", "mine.suite.toml", "--out", "results") == 0
     out = capsys.readouterr().out
@@ -94,7 +94,7 @@ def test_options_choose_among_the_runs_of_a_suite(write_suite, options, expected
         assert dict(run.settings) == ({"iterations": 7} if run.engine == "mujoco" else {})
 
 
-def test_a_time_step_replaces_the_way_to_one_and_its_settings(write_suite):
+def test_time_step_option_replaces_automatic_step_and_its_settings(write_suite):
     way = 'time_step = "extrapolated"\nsettings = { iterations = 7, finest_step = 1e-4 }\n'
     suite = write_suite(f'[[runs]]\nengine = "mujoco"\n{way}' + SUITE[SUITE.index("[[cases]]") :])
     (given,) = chosen_runs(suite, None, None, 2e-4)
@@ -133,7 +133,7 @@ def test_a_case_is_stated_in_units_of_uplift_with_slab_and_resistance():
 
 
 @pytest.mark.slow
-def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):
+def test_external_trajectory_is_added_as_a_run(folder, no_engines, monkeypatch, capsys):
     no_engines()
     arguments = [*RELEASE, "--trajectory", "table.csv", "--trajectory-angles", "rad"]
     assert call("compare", *arguments, "--engine", "none", "--out", "alone") == 0

@@ -21,7 +21,7 @@ DRAWN = {"prestress": 400e3, "axial_rigidity": 30e6, "length": 10.0, "column_mas
 
 
 @pytest.mark.slow
-def test_a_comparison_leaves_flat_ground_out_and_refuses_it_before_anything_runs(
+def test_comparison_with_tendon_skips_or_refuses_flat_ground_before_any_run(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     given = ["compare", *PIER, "--engine", "mujoco", "--tendon-prestress", "0.5", "--out"]
@@ -37,7 +37,7 @@ def test_a_comparison_leaves_flat_ground_out_and_refuses_it_before_anything_runs
 
 
 @pytest.mark.slow
-def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
+def test_tendon_ratios_and_steel_data_give_equal_tendons(tmp_path: Path) -> None:
     drawn = rw.Tendon.from_steel(**DRAWN)
     ratios = ["--tendon-prestress", repr(drawn.prestress), "--tendon-stiffness", repr(drawn.stiffness)]
     traces = []
@@ -58,7 +58,7 @@ def test_ratios_and_a_drawing_state_the_same_tendon(tmp_path: Path) -> None:
     assert "--tendon-force" in answer
 
 
-def test_a_suite_states_tendons(tmp_path: Path) -> None:
+def test_suite_file_defines_tendons(tmp_path: Path) -> None:
     path = tmp_path / "tied.toml"
     path.write_text(
         '[[cases]]\nname = "pier"\nduration = 2.0\ncylinder = { semidiagonal = 6.0, tan_alpha = 0.2 }\n'
@@ -75,7 +75,7 @@ def test_a_suite_states_tendons(tmp_path: Path) -> None:
         rw.read_suite(path)
 
 
-def test_the_threshold_of_uplift_counts_the_prestress() -> None:
+def test_uplift_threshold_includes_the_prestress() -> None:
     pier, tendon = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2), rw.Tendon(prestress=1.0)
     motion = rw.el_centro_1940(vertical=True)
     for body in (pier, rw.WobblingFrame(pier, 1.0)):
@@ -86,7 +86,7 @@ def test_the_threshold_of_uplift_counts_the_prestress() -> None:
 
 
 @pytest.mark.skipif(find_spec("exudyn") is None, reason="an engine of flat ground alone")
-def test_a_case_with_a_tendon_leaves_flat_ground_out_by_default() -> None:
+def test_case_with_a_tendon_skips_flat_ground_by_default() -> None:
     from rockwobble.compare import default_runs
 
     release = rw.InitialState(0.1)
@@ -120,7 +120,7 @@ STUDIES = {
 @pytest.mark.slow
 @pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("command", STUDIES)
-def test_a_study_of_one_body_takes_the_tendon_of_its_drawing(command: str, tmp_path: Path) -> None:
+def test_study_of_one_body_accepts_a_tendon_from_steel_data(command: str, tmp_path: Path) -> None:
     drawn = rw.Tendon.from_steel(**DRAWN, yield_force=900e3)
     ratios = ["--tendon-prestress", repr(drawn.prestress), "--tendon-stiffness", repr(drawn.stiffness)]
     steel = [*STEEL]

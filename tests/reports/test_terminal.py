@@ -27,7 +27,7 @@ from rockwobble.reports.pages import page_of
         ("fragility --synthetic 4 --levels 1,4,8", 8),
     ],
 )
-def test_an_answer_fits_on_a_screen_of_80_columns(
+def test_command_output_fits_a_screen_of_80_columns(
     command: str,
     most: int,
     no_engines: Callable[..., None],
@@ -51,7 +51,7 @@ def printed(comparison: rw.Comparison, width: int) -> str:
 
 
 @pytest.mark.parametrize("width", [80, 100])
-def test_every_row_of_the_table_of_a_comparison_is_a_line(comparison: rw.Comparison, width: int) -> None:
+def test_comparison_table_prints_one_line_per_row(comparison: rw.Comparison, width: int) -> None:
     text = printed(comparison, width)
     assert "…" not in text
     assert max(len(line.rstrip()) for line in text.splitlines()) <= width
@@ -62,7 +62,7 @@ def test_every_row_of_the_table_of_a_comparison_is_a_line(comparison: rw.Compari
     assert "more column" not in text
 
 
-def test_a_failed_run_is_no_number(no_engines: Callable[..., None]) -> None:
+def test_failed_run_prints_no_number(no_engines: Callable[..., None]) -> None:
     no_engines(outcome="failed", peak_tilt=float("nan"), residual_displacement=float("nan"))
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0, name="still")
     text = printed(rw.comparison(case, runs=[Run("mujoco", "recess")]), 100)

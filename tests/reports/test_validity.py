@@ -30,7 +30,7 @@ def validity(tmp_path_factory: pytest.TempPathFactory) -> Validity:
     return tiny_validity(tmp_path_factory.getbasetemp())
 
 
-def test_the_document_shows_every_picture_and_its_tables_are_whole(validity: Validity) -> None:
+def test_document_has_every_picture_and_complete_tables(validity: Validity) -> None:
     page = page_of(validity)
     document = page.markdown()
     shown = re.findall(r"\]\((.*?)\.svg\)", document)
@@ -41,7 +41,7 @@ def test_the_document_shows_every_picture_and_its_tables_are_whole(validity: Val
     assert all(len({row.count("|") for row in table}) == 1 for table in tables)
 
 
-def test_every_figure_can_be_read(validity: Validity) -> None:
+def test_validity_figures_are_legible(validity: Validity) -> None:
     for picture in page_of(validity).pictures:
         assert len(picture.entries()) <= 8
         assert isinstance(picture.caption, Finding)
@@ -49,7 +49,7 @@ def test_every_figure_can_be_read(validity: Validity) -> None:
         assert title != words
 
 
-def test_with_a_slab_it_is_named_and_no_clearance_is(validity: Validity) -> None:
+def test_report_with_slab_names_it_and_omits_clearance(validity: Validity) -> None:
     tables = {name: table for name, table in validity.tables.items() if name != "rings"}
     facts = {**validity.facts, "slab_mass_ratio": 0.25}
     page = page_of(dataclasses.replace(validity, tables=tables, facts=facts))
@@ -59,7 +59,7 @@ def test_with_a_slab_it_is_named_and_no_clearance_is(validity: Validity) -> None
     assert sorted(shown) == sorted(picture.name for picture in page.pictures)
 
 
-def test_with_a_tendon_it_is_stated_and_nothing_stands_against_flat_ground(validity: Validity) -> None:
+def test_report_with_tendon_states_it_and_omits_flat_ground(validity: Validity) -> None:
     tables = dict(validity.tables)
     tables["peaks"] = tables["peaks"].assign(flat=math.nan, tension=1.25)
     free = dict.fromkeys(("flat_turn", "flat_period", "flat_peak"), math.nan)
@@ -79,7 +79,7 @@ def test_with_a_tendon_it_is_stated_and_nothing_stands_against_flat_ground(valid
     assert sorted(shown) == sorted(picture.name for picture in page.pictures)
 
 
-def test_the_command_stores_what_its_pages_are_drawn_from(
+def test_stored_tables_suffice_to_redraw_the_pages(
     validity: Validity, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(study, "measure_all", lambda *_, **__: dict(validity.tables))

@@ -31,12 +31,12 @@ def validity() -> Validity:
     return Validity.load(PUBLISHED)
 
 
-def test_the_published_page_is_drawn_word_for_word(validity: Validity) -> None:
+def test_published_validity_page_is_redrawn_exactly(validity: Validity) -> None:
     """It is the golden page of its kind: `python reports/published/remake.py --redraw` makes it anew."""
     assert page_of(validity).markdown() == (PUBLISHED / "validity.md").read_text(encoding="utf-8")
 
 
-def test_captions_of_maps_say_of_how_many_records_a_cell_is(validity: Validity) -> None:
+def test_map_captions_state_the_records_per_cell(validity: Validity) -> None:
     peaks = validity.tables["peaks"]
     peaks = peaks[peaks["motion"] != "El Centro 1940"]
     fell = peaks[["flat", "recess", "copy"]].mul(np.arctan(peaks["tan_alpha"]), axis="index") >= 1.57
@@ -69,7 +69,7 @@ def worded(picture: Picture) -> str:
     return sentence(picture.caption)
 
 
-def test_open_marks_are_explained_where_there_are_some(validity: Validity) -> None:
+def test_open_marks_are_explained_if_drawn(validity: Validity) -> None:
     table = validity.tables["verification"]
     for resolved in (True, False):
         other = table.assign(resolved=[resolved, *table["resolved"][1:]])
@@ -78,7 +78,7 @@ def test_open_marks_are_explained_where_there_are_some(validity: Validity) -> No
         assert ("Open marks" in worded(picture)) is not resolved
 
 
-def test_the_guide_says_of_contact_and_of_clearance_what_the_tables_bear(validity: Validity) -> None:
+def test_guide_on_contact_and_clearance_matches_the_tables(validity: Validity) -> None:
     guide = (PUBLISHED.parents[2] / "docs" / "guide" / "limits.md").read_text(encoding="utf-8")
     table = validity.tables["contact"]
     failed = (table[["free_outcome", "outcome"]] != "stands").any(axis="columns")
@@ -101,7 +101,7 @@ SIZES = [1.0, 0.07, 0.0996, 0.2, 9.96, 150.0, *10.0 ** np.random.default_rng(7).
 
 @pytest.mark.parametrize("form", [".2g", ".3g", ".2f", "percent"])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_bound_in_words_holds_and_is_near(form: str, sign: float) -> None:
+def test_bounds_rounded_for_text_hold_and_are_close(form: str, sign: float) -> None:
     for size in SIZES:
         value = sign * float(size)
 
@@ -116,7 +116,7 @@ def test_a_bound_in_words_holds_and_is_near(form: str, sign: float) -> None:
         assert any(near), value
 
 
-def test_a_number_that_its_digits_hold_is_not_rounded() -> None:
+def test_exactly_printable_numbers_are_not_rounded() -> None:
     for bound in ("most", "least"):
         assert [number(0.07, f"{bound} percent"), number(0.3, f"{bound} .2g")] == ["7 %", "0.3"]
         assert [number(math.nan, f"{bound} .2g"), number(math.inf, f"{bound} .2f")] == ["–", "∞"]

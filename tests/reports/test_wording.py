@@ -76,7 +76,7 @@ def texts_of_code() -> set[object]:
     return {node.value for tree in modules() for node in ast.walk(tree) if isinstance(node, ast.Constant)}
 
 
-def test_keys_in_the_code_are_those_of_the_word_file():
+def test_keys_in_code_equal_keys_of_the_word_file():
     lines = {key.partition(":")[0] for key in SENTENCES}
     assert keys_in_code() <= lines
     stated = texts_of_code()
@@ -97,7 +97,7 @@ def values_of(line: str, number: Value, text: Value) -> dict[str, Value]:
 
 @pytest.mark.parametrize("number", [2.0, 0, -0.5, math.nan, math.inf, (0.4, 0.26, math.inf), None])
 @pytest.mark.parametrize("text", ["words", ("a", "b"), ()])
-def test_each_line_takes_every_value_of_its_types(number: Value, text: Value):
+def test_each_wording_line_formats_every_value_type(number: Value, text: Value):
     for key, both in SENTENCES.items():
         for short, line in enumerate([both] if isinstance(both, str) else reversed(both)):
             finding = Finding(key=key, values=values_of(line, number, text))
@@ -106,7 +106,7 @@ def test_each_line_takes_every_value_of_its_types(number: Value, text: Value):
 
 
 @pytest.mark.parametrize("code", CODES)
-def test_each_diagnostic_has_a_line_that_takes_its_values(code: str):
+def test_each_diagnostic_is_worded_with_its_values(code: str):
     for detail in REASONS.get(code, ("",)):
         for number in (2.0, math.nan, math.inf):
             fact = Diagnostic(code=code, time=number, duration=2.0, size=number, bound=1.0, detail=detail)
@@ -123,7 +123,7 @@ def test_each_diagnostic_has_a_line_that_takes_its_values(code: str):
         ("{reason:word}", "the runs diverge there"),
     ],
 )
-def test_a_value_is_written_as_its_unit_asks(line: str, text: str):
+def test_values_are_formatted_by_unit(line: str, text: str):
     values = {
         "tilt": 0.2,
         "share": (0.4, 0.26, 0.71),
@@ -141,7 +141,7 @@ def test_a_value_without_a_known_quantity_is_refused():
         Finding(key="any", values={"speed": 1.0})
 
 
-def test_findings_are_a_table_a_file_and_a_text():
+def test_findings_convert_to_table_file_and_text():
     finding = Finding(key="diagnostic.slip", level="caution", values={"time": 1.5}, runs="mujoco")
     findings = Findings([finding, Finding(key="diagnostic.side")])
     assert repr(findings).splitlines()[0] == "diagnostic: caution, contact slipped from 1.5 s on"
@@ -150,7 +150,7 @@ def test_findings_are_a_table_a_file_and_a_text():
     assert findings.of("diagnostic") == findings
 
 
-def test_every_quantity_has_a_meaning():
+def test_every_quantity_has_a_description():
     assert all(meaning for _, meaning in QUANTITIES.values())
     assert lines_of("diagnostic.slip") == ("slipped", "contact slipped[ from {time} on]")
 

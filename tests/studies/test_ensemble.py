@@ -46,7 +46,7 @@ def test_leaning_on_a_wall_beyond_balance_counts_as_overturned():
     assert swept["outcome"].tolist() == study.members["outcome"].tolist()
 
 
-def test_a_ring_is_held_against_the_recess_model(monkeypatch):
+def test_ring_run_is_compared_with_the_recess_model(monkeypatch):
     monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     runs = [Run("mujoco", support) for support in ("recess", "flat", "ring")]
     methods = ensemble(CASE, runs=runs, copies=2, workers=1).methods.set_index("method")
@@ -64,7 +64,7 @@ def made_up(job: Job, peak: float, outcome: str = "stands") -> Trace:
     return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)
 
 
-def test_failed_runs_are_counted_and_named_and_are_no_members(monkeypatch):
+def test_failed_runs_are_counted_named_and_excluded_from_members(monkeypatch):
     def simulate(job: Job) -> Trace:
         if job.label == "flat-ground model" and job.case.name.endswith("#2"):
             return made_up(job, math.nan, "failed")
@@ -93,7 +93,7 @@ def test_failed_runs_are_counted_and_named_and_are_no_members(monkeypatch):
         assert row[["runs", "uplifted", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
 
 
-def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
+def test_member_outcome_and_peak_equal_its_single_run(monkeypatch):
     cases = [dataclasses.replace(CASE, name=name) for name in "abcdef"]
     # past its balance at the end: what that is called is the matter of who ran it
     runs = {
@@ -119,7 +119,7 @@ def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
         ensemble_of(pd.concat([study.members, study.members[:1]]), study.facts)
 
 
-def test_bounds_hold_whatever_the_runs_that_failed_would_have_done(monkeypatch):
+def test_bounds_contain_the_result_had_failed_runs_finished(monkeypatch):
     monkeypatch.setattr(ENSEMBLE, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     study = ensemble(CASE, runs=[], copies=9, perturbation=0.05, workers=1)
     whole = study.methods.set_index("method")
@@ -162,7 +162,7 @@ def test_every_input_is_in_the_hash_of_an_ensemble():
     assert len(set(hashes)) == 4
 
 
-def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
+def test_far_field_motions_have_the_stated_peak_and_distinct_names(monkeypatch):
     def pair(number: int) -> GroundMotion:
         return GroundMotion([[0.0, 0.0], [float(number), 0.0]], 0.01, f"pair {number}")
 

@@ -65,7 +65,7 @@ def test_an_overturning_window_narrower_than_the_grid_is_found(centre):
     assert lowest - run[run < lowest].max() <= STEP * (1.0 + SAME)
 
 
-def test_a_coarse_grid_is_filled_and_nothing_beyond_it_is_run():
+def test_coarse_grid_is_refined_and_never_exceeded():
     far = Window(9.0, 0.1, 0.02)
     assert math.isnan(search(far, 1.003, np.array([0.5, 3.5]), known=np.zeros(2)))
     run = np.sort(far.run)
@@ -77,7 +77,7 @@ def test_a_coarse_grid_is_filled_and_nothing_beyond_it_is_run():
     assert far.run == []
 
 
-def test_a_failed_run_stands_and_hides_nothing_beyond_its_own_step():
+def test_failed_run_counts_as_standing_and_hides_only_its_step():
     window = Window(1.5003, 0.02, 0.3)
 
     def partly(levels: np.ndarray) -> np.ndarray:
@@ -86,7 +86,7 @@ def test_a_failed_run_stands_and_hides_nothing_beyond_its_own_step():
     assert 0.0 <= search(partly, 1.0, GRID) - 1.4903 <= STEP
 
 
-def test_searches_side_by_side_find_what_each_finds_alone():
+def test_parallel_searches_equal_separate_searches():
     edges = np.array([1.5, 2.345, 9.0, 0.5])
 
     def peaks(i: int, levels: np.ndarray) -> np.ndarray:
@@ -105,7 +105,7 @@ def test_searches_side_by_side_find_what_each_finds_alone():
 
 
 @pytest.mark.parametrize("stands", [True, False])
-def test_motions_that_uplift_only_at_the_start_are_run_there(stands: bool):
+def test_search_runs_its_start_unless_it_is_known_to_stand(stands: bool):
     run: list[float] = []
 
     def still(_: int, levels: np.ndarray) -> np.ndarray:
@@ -117,7 +117,7 @@ def test_motions_that_uplift_only_at_the_start_are_run_there(stands: bool):
     assert (1.0 in run) is not stands
 
 
-def test_threads_are_as_many_as_this_process_may_use(monkeypatch):
+def test_thread_count_is_the_number_of_usable_processors(monkeypatch):
     monkeypatch.setattr("rockwobble.models.cpus.usable_cpus", lambda: 1)
 
     def thread(_: int) -> int:
@@ -174,7 +174,7 @@ def test_narrow_gaps_are_found_at_the_stated_rate(width: float, chance: float):
     )
 
 
-def test_a_search_finds_windows_that_a_grid_does_not_see():
+def test_search_detects_windows_missed_by_a_grid():
     def peaks(levels: np.ndarray) -> np.ndarray:
         return reduced.peak_tilts([3.177], 0.1, EL_CENTRO, UNIT * levels, rtol=1e-8)[0]
 
@@ -197,7 +197,7 @@ HAIR = 1e-6  # relative: either side of the exact threshold, far above rounding
 
 
 @pytest.mark.parametrize("options", [{}, {"plane": 0.5 * math.pi}, {"plane": 0.7}, {"until": 3.0}])
-def test_nothing_moves_below_the_factor_of_uplift(options):
+def test_cylinder_stays_at_rest_below_the_uplift_factor(options):
     motion = el_centro_1940(vertical=True)
     factor = uplift_factor(motion, 0.2, 9.81, **options)
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

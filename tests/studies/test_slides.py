@@ -13,7 +13,7 @@ CASK = rw.Cylinder(semidiagonal=3.0, tan_alpha=0.5)
 CASE = rw.Case(CASK, rw.el_centro_1940().scaled(2.5), duration=8.0, friction=0.3)
 
 
-def test_advice_on_a_slide_says_how_far_and_uses_up_a_gap() -> None:
+def test_sliding_advice_states_displacement_and_gap_exceedance() -> None:
     advice = rw.advise(CASE, copies=20, gap=0.1)
     first, slide, *others = advice.findings().of("mode")
     trace = reduced.simulate(CASE, support="flat")
@@ -31,7 +31,7 @@ def test_advice_on_a_slide_says_how_far_and_uses_up_a_gap() -> None:
 
 
 @pytest.mark.slow
-def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
+def test_recess_walls_carry_the_shear_beyond_friction() -> None:
     advice = rw.advise(CASE, copies=20, support="recess")
     first, walls = advice.findings().of("mode")
     assert (first.key, walls.key) == ("mode.rocks", "mode.walls")
@@ -41,7 +41,7 @@ def test_walls_stop_a_slide_with_what_friction_does_not_take() -> None:
 
 
 @pytest.mark.slow
-def test_friction_near_the_border_and_friction_unknown_are_said() -> None:
+def test_friction_near_sliding_limit_and_unknown_friction_are_reported() -> None:
     near = rw.Case(CASK, CASE.motion, duration=8.0, friction=0.46)
     assert [each.key for each in rw.advise(near, copies=20).findings().of("mode")][1] == "mode.border"
     both = rw.Case(CASK, CASE.motion, duration=8.0, friction=0.52)
@@ -55,7 +55,7 @@ def test_friction_near_the_border_and_friction_unknown_are_said() -> None:
     assert math.isnan(unknown.findings().of("mode")[0].values["given"])
 
 
-def test_spectrum_says_the_mode_first_and_refuses_what_only_slides() -> None:
+def test_spectrum_states_the_mode_first_and_refuses_pure_sliding() -> None:
     grid = {"semidiagonals": [3.0], "intensities": [2.0], "search_step": 1.0, "probes": 0, "support": "flat"}
     both = rw.spectrum(0.5, CASE.motion, friction=0.52, **grid)
     assert [each.key for each in both.findings()][:2] == ["mode.rocks_and_slides", "mode.no_engine"]
@@ -63,7 +63,7 @@ def test_spectrum_says_the_mode_first_and_refuses_what_only_slides() -> None:
         rw.spectrum(0.5, CASE.motion, friction=0.3, **grid)
 
 
-def test_fragility_counts_the_slides_that_use_up_a_gap() -> None:
+def test_fragility_counts_displacements_beyond_the_gap() -> None:
     motions = rw.synthetic_motions(6, peak=3.0, seed=1)
     options = {"friction": 0.2, "gap": 0.05, "measure": "pga", "resamples": 20, "workers": 1}
     fragility = rw.fragility(CASK, motions, methods=["recess", "flat"], levels=[0.3, 0.6], **options)

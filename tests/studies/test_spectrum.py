@@ -40,7 +40,7 @@ def alone(component: int) -> GroundMotion:
 @pytest.mark.parametrize(
     ("series", "motion"), [(SPATIAL, EL_CENTRO), (PLANAR_X, alone(0)), (PLANAR_Y, alone(1))]
 )
-def test_each_series_is_driven_by_its_part_of_the_same_shaking(spectrum, series, motion):
+def test_each_series_uses_its_component_at_one_common_scale(spectrum, series, motion):
     compared = 0
     for i, j in ((0, 1), (1, 4), (2, 3), (3, 6), (3, 10)):
         # the recess model under one component stays in its plane, by another way than the planar model
@@ -57,7 +57,7 @@ def test_each_series_is_driven_by_its_part_of_the_same_shaking(spectrum, series,
     assert compared >= 4
 
 
-def test_the_tables_hold_every_cell(spectrum):
+def test_tables_have_a_row_for_every_cell(spectrum):
     for series in SERIES:  # the first intensity is the threshold of uplift
         assert not spectrum.peak_tilt[series][:, 0].any()
     assert (spectrum.peak_tilt[SPATIAL][:, 1] > 0.0).all()
@@ -84,7 +84,7 @@ def test_the_tables_hold_every_cell(spectrum):
     assert row["probed"] == spectrum.plan.probes == PROBES
 
 
-def test_below_a_grid_that_begins_high_the_lowest_is_found():
+def test_lowest_intensity_is_found_below_the_grid():
     plan = SpectrumPlan(semidiagonals=[0.5], intensities=[6.0, 8.0], probes=0)
     spectrum = tilt_maps(0.1, EL_CENTRO, plan)
     assert spectrum.overturned(SPATIAL)[0, 0]
@@ -94,7 +94,7 @@ def test_below_a_grid_that_begins_high_the_lowest_is_found():
 
 
 @pytest.mark.parametrize("terms", [{"support": "flat"}, {"slab_mass_ratio": 2.0}])
-def test_every_cell_and_its_rerun_carry_the_terms_of_the_plan(spectrum, terms):
+def test_cells_and_reruns_use_all_options_of_the_plan(spectrum, terms):
     options = {"semidiagonals": [4.0], "intensities": INTENSITIES[1:4:2], "search_step": 2.0, "probes": 0}
     maps = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options, **terms))
     frame = WobblingFrame(Cylinder(semidiagonal=4.0, tan_alpha=0.1), terms.get("slab_mass_ratio", 0.0))
@@ -134,7 +134,7 @@ def test_cells_agree_with_tighter_runs_unless_copies_differ(drawn):
     assert agree.min() > 0.8
 
 
-def test_a_wrong_cell_does_not_pass_the_check(drawn):
+def test_verification_detects_a_wrong_cell(drawn):
     wrong = {name: tilts.copy() for name, tilts in drawn.peak_tilt.items()}
     wrong[SPATIAL] *= 1.03  # beyond the 2 % that count as agreement
     forged = dataclasses.replace(drawn, peak_tilt=wrong)
@@ -187,7 +187,7 @@ def test_a_fall_after_the_record_counts_as_overturned_in_cells():
 
 
 @pytest.mark.slow
-def test_a_resumed_spectrum_has_the_same_bits_with_any_number_of_threads(tmp_path, monkeypatch):
+def test_resumed_spectrum_is_bitwise_equal_for_any_thread_count(tmp_path, monkeypatch):
     options = {"semidiagonals": np.linspace(1.0, 20.0, 9), "intensities": [1.0, 4.0, 8.0], "probes": 9}
     whole = tilt_maps(0.1, EL_CENTRO, SpectrumPlan(**options), workers=1)
     told = []

@@ -46,7 +46,7 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> TiltMaps:
     )
 
 
-def test_gaps_are_what_stands_above_the_lowest_overturning_intensity():
+def test_safe_gaps_are_standing_cells_above_the_lowest_overturning_intensity():
     spectrum = made_up(["ooXoOX", "XooXX?", "oooooo", "oXo?oX", "oXoooo"], ["......"] * 5, ["......"] * 5)
     table = safe_gaps(spectrum)
     assert set(table["series"]) == {SPATIAL}
@@ -66,7 +66,7 @@ def test_gaps_are_what_stands_above_the_lowest_overturning_intensity():
     ]
 
 
-def test_shares_count_cells_and_leave_out_failed_ones(monkeypatch):
+def test_overturning_shares_exclude_failed_cells(monkeypatch):
     spectrum = made_up(
         space=["oXXX", "oOoX", "oooX"],
         x=["ooXX", "ooXX", "ooo?"],
@@ -90,7 +90,7 @@ def test_shares_count_cells_and_leave_out_failed_ones(monkeypatch):
     assert (every["smallest"], every["largest"]) == (1.0, 3.0)
 
 
-def test_the_worse_plane_decides_the_edge():
+def test_planar_overturning_boundary_is_that_of_the_worse_plane():
     spectrum = made_up(
         space=["oXXX", "oooX", "ooXX", "oooo", "oooX"],
         x=["ooXX", "ooXX", "ooXX", "oooo", "oooo"],
@@ -105,7 +105,7 @@ def test_the_worse_plane_decides_the_edge():
     assert every["planar_y_lowest"] == math.inf
 
 
-def test_an_edge_within_the_resolution_is_no_difference():
+def test_boundary_differences_within_resolution_are_ignored():
     spectrum = made_up(["oX"], ["oX"], ["oo"])
     for expected in (0.0, -0.18):
         spectrum.lowest[SPATIAL][0] -= 0.09
@@ -117,7 +117,7 @@ def test_an_edge_within_the_resolution_is_no_difference():
 @pytest.mark.parametrize(
     ("smallest", "largest", "width"), [(0.5, 30.0, 5.0), (0.05, 0.9, 0.2), (2.0, 400.0, 50.0)]
 )
-def test_bands_have_a_round_width_and_hold_all_sizes(smallest, largest, width):
+def test_size_bands_have_round_width_and_cover_all_sizes(smallest, largest, width):
     edges = size_bands(np.array([smallest, largest]))
     assert np.diff(edges) == pytest.approx(width)
     assert edges[0] <= smallest
@@ -129,7 +129,7 @@ def test_bands_have_a_round_width_and_hold_all_sizes(smallest, largest, width):
 
 
 @pytest.mark.slow
-def test_a_spectrum_shows_itself(tmp_path):
+def test_spectrum_has_repr_table_and_plot(tmp_path):
     maps = made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3)
     spectrum = spectrum_of(maps)
     shows_itself(spectrum, "cells 18", "share that overturns in 3D ")

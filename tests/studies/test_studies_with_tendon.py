@@ -24,7 +24,7 @@ MOTIONS = synthetic_motions(4, peak=1.0, seed=3)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("slab", [0.0, 1.0])
-def test_a_fragility_runs_the_tendon_and_leaves_out_flat_ground(slab: float) -> None:
+def test_fragility_includes_the_tendon_and_skips_flat_ground(slab: float) -> None:
     body = rw.WobblingFrame(PIER, slab) if slab else PIER
     fragility = rw.fragility({"it": body}, MOTIONS, levels=[3.0, 9.0], resamples=50, workers=1, **STEEL)
     assert "flat-ground model" not in fragility.facts["methods"]
@@ -60,7 +60,7 @@ def test_a_spectrum_searches_from_the_raised_uplift() -> None:
     assert reduced.simulate(case, rtol=1e-7).outcome == "overturned"
 
 
-def test_a_sweep_and_an_ensemble_run_the_tendon() -> None:
+def test_sweep_and_ensemble_include_the_tendon() -> None:
     motion = rw.el_centro_1940()
     grid = rw.Grid(semidiagonals=[6.0], tan_alphas=[0.2], scales=[3.0], motions=[motion], **STEEL)
     case = rw.Case(PIER, motion.scaled(3.0), tendon=TENDON)
@@ -70,7 +70,7 @@ def test_a_sweep_and_an_ensemble_run_the_tendon() -> None:
     assert list(members.methods["method"]) == ["recess model"]
 
 
-def test_the_balance_without_a_term_is_alpha_to_the_bit() -> None:
+def test_balance_tilt_without_tendon_is_exactly_alpha() -> None:
     for tan_alpha, gravity in itertools.product(np.geomspace(0.02, 1.5, 40).tolist(), (1.62, 9.81)):
         pier = rw.Cylinder(semidiagonal=3.0, tan_alpha=tan_alpha)
         for body in (pier, rw.WobblingFrame(pier, 0.7)):
@@ -96,7 +96,7 @@ def test_a_ring_run_righted_by_a_tendon_has_not_overturned(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("force", [1.1, 0.8, 0.55])
-def test_beyond_yield_before_the_balance_studies_know_only_what_came_before(force: float) -> None:
+def test_results_after_tendon_yield_are_unknown_in_studies(force: float) -> None:
     column = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motions = rw.synthetic_motions(6, peak=3.0, seed=1, duration=8.0)
     steel = {"tendon_prestress": 0.5, "tendon_stiffness": 1.0}

@@ -67,14 +67,14 @@ def test_tables_are_in_the_order_of_the_tasks_whatever_ran_first(tmp_path):
 
 
 @pytest.mark.usefixtures("second_dies")
-def test_a_failed_task_has_a_table_or_ends_the_study(tmp_path):
+def test_lost_task_gets_a_table_or_ends_the_study(tmp_path):
     assert Multiples([1, 2, 3], known=True).run(workers=1) == [10, -2, 30]
     with pytest.raises(IncompleteError, match=r"1 of 3 tasks ended .* the last words of 2: out of memory"):
         Multiples([1, 2, 3]).run(folder=tmp_path, workers=1)
     assert kept(tmp_path) >= {"1", "3"}
 
 
-def test_finished_tasks_of_others_go_only_when_results_are_saved(tmp_path):
+def test_cached_tasks_of_another_plan_are_deleted_only_after_saving(tmp_path):
     Multiples([9]).run(folder=tmp_path, workers=1)
     saved: list[list[int]] = []
     with claim_folder(tmp_path, plan="this", command="study", overwrite=True):

@@ -56,7 +56,7 @@ def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):
         )
 
 
-def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
+def test_enlarged_grid_reuses_finished_chunks(tmp_path):
     sweep(grid(tan_alphas=[0.2]), out=tmp_path, workers=1, chunk_size=5)
     before = set(files(tmp_path).values())
     events = []
@@ -67,7 +67,7 @@ def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
     pd.testing.assert_frame_equal(table, Sweep.load(tmp_path).table, check_exact=True)
 
 
-def test_a_sweep_says_what_died_and_what_is_kept(tmp_path, monkeypatch):
+def test_sweep_error_names_dead_task_and_kept_chunks(tmp_path, monkeypatch):
     run_tasks = study.run_tasks
 
     def losing(*args, **options):
@@ -89,7 +89,7 @@ def test_a_sweep_says_what_died_and_what_is_kept(tmp_path, monkeypatch):
         Sweep.load(tmp_path)
 
 
-def test_each_input_of_a_chunk_is_in_its_key():
+def test_chunk_key_depends_on_every_input():
     base = next(grid().chunks()).key()
     others = [
         grid(semidiagonals=SIZES[1:]),
@@ -108,7 +108,7 @@ def test_each_input_of_a_chunk_is_in_its_key():
     assert base == next(grid().chunks()).key()
 
 
-def test_cases_with_engines_and_models():
+def test_suite_of_engines_and_models_is_swept():
     cases = [
         Case(PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5, name=f"{tilt:g}")
         for tilt in (0.3, 0.5)
@@ -126,7 +126,7 @@ def test_cases_with_engines_and_models():
     pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
 
 
-def test_manifest_and_summary_say_what_was_swept(tmp_path):
+def test_manifest_and_summary_describe_the_sweep(tmp_path):
     swept = sweep(grid(), out=tmp_path, workers=1)
     made = read_results(tmp_path, KIND).manifest
     assert made.headline == {"runs": 40, **swept.table["outcome"].value_counts().to_dict()}

@@ -96,7 +96,7 @@ def heavier(tables: Tables, tmp_path_factory: pytest.TempPathFactory) -> Tables:
         return measure_all(TINY, tmp_path_factory.mktemp("heavier"), workers=1)
 
 
-def test_every_part_measures_and_every_limit_has_numbers(tables: Tables) -> None:
+def test_every_part_has_a_table_and_every_limit_has_numbers(tables: Tables) -> None:
     assert set(tables) == set(PARTS)
     assert all(len(table) for table in tables.values())
     ring = tables["rings"].query("support == 'ring'")
@@ -109,9 +109,7 @@ def test_every_part_measures_and_every_limit_has_numbers(tables: Tables) -> None
     assert groups == {*limits, "vertical", "traces"}
 
 
-def test_every_limit_rests_on_the_reduced_model_and_the_engine_does_not(
-    tables: Tables, heavier: Tables
-) -> None:
+def test_limits_change_with_the_reduced_model_and_engine_runs_do_not(tables: Tables, heavier: Tables) -> None:
     right, wrong = (said(each)["limit_release.decided"] for each in (tables, heavier))
     names = ["runs", "runs_contradicted", "runs_all"]
     np.testing.assert_equal([right[name] for name in names], [2, math.nan, 2])
@@ -134,7 +132,7 @@ def test_every_limit_rests_on_the_reduced_model_and_the_engine_does_not(
     assert again.peak_tilt > 0.0
 
 
-def test_quick_is_a_part_of_the_full_report_and_no_record_beyond_earthquakes() -> None:
+def test_quick_extent_is_a_subset_and_motions_have_plausible_peaks() -> None:
     quick, full = ([part for part, *_ in tasks_of(extent)] for extent in (QUICK, FULL))
     assert all(0 < quick.count(part) <= full.count(part) for part in PARTS)
     for name in ("tan_alphas", "releases", "shaken_tan_alphas", "sizes"):
@@ -157,7 +155,7 @@ def test_quick_is_a_part_of_the_full_report_and_no_record_beyond_earthquakes() -
         (1.0, 0.3, "undecided", "undecided"),
     ],
 )
-def test_over_records_agreement_is_said_where_the_interval_shows_it(
+def test_agreement_over_records_needs_the_interval_within_the_margin(
     tables: Tables, factor: float, scatter: float, verdict: str, key: str
 ) -> None:
     random, count = np.random.default_rng(1), 22
@@ -195,7 +193,7 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
         (1.0, 1.0 + MARGIN + 1e-3, False),
     ],
 )
-def test_runs_converge_where_neither_tail_leaves_the_margin(
+def test_convergence_needs_both_tails_within_the_margin(
     tables: Tables, least: float, largest: float, converges: bool
 ) -> None:
     ring = pd.concat([tables["records"].query("method == 'ring'").iloc[:1]] * 22, ignore_index=True)
@@ -206,7 +204,7 @@ def test_runs_converge_where_neither_tail_leaves_the_margin(
     assert f"limit_records.{key}" in said({**tables, "records": rows})
 
 
-def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> None:
+def test_map_cells_count_records_signed_changes_and_overturning(tables: Tables) -> None:
     fallen = 0.5 * math.pi / math.atan(0.2)
     rows = {
         "recess": [0.1, 0.2, 0.4, fallen] * 2,
@@ -226,7 +224,7 @@ def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> 
     assert cell["copy_ratio"] == pytest.approx(1.0)
 
 
-def test_needs_are_by_slenderness_and_intensity_and_of_enough_motions(tables: Tables) -> None:
+def test_requirements_by_slenderness_and_intensity_need_enough_motions(tables: Tables) -> None:
     def cell(tan_alpha: float, size: float, intensity: float, largest: float, standing: int) -> pd.DataFrame:
         shares = np.where(np.arange(10) < standing, np.arange(1, 11) / 10.0, math.nan)
         return pd.DataFrame(
@@ -253,7 +251,7 @@ def test_needs_are_by_slenderness_and_intensity_and_of_enough_motions(tables: Ta
     assert requirements[["sizes", "motions"]].to_numpy().tolist() == [[2, 20], [1, 10]]
 
 
-def test_the_vertical_component_counts_what_it_alone_overturns() -> None:
+def test_vertical_component_counts_records_it_alone_overturns() -> None:
     fell = 0.5 * math.pi / math.atan(0.2)
     recess, other = [0.5] * 8 + [0.5, fell, fell], [0.55] * 8 + [fell, 0.5, fell]
     table = pd.DataFrame({"tan_alpha": 0.2, "recess": recess, "vertical": other, "copy": recess})
@@ -265,7 +263,7 @@ def test_the_vertical_component_counts_what_it_alone_overturns() -> None:
     assert row["least"] == row["largest"] == pytest.approx(1.1)
 
 
-def test_a_friction_that_slips_at_one_release_does_not_hold(tables: Tables) -> None:
+def test_friction_limit_excludes_values_that_slip_at_any_release(tables: Tables) -> None:
     slip = pd.DataFrame(
         {"share": [0.5, 0.9, 1.0] * 2, "slip": [0.0, 0.0, 0.0, 0.1, 0.1, 0.0], "tilt_rms": 0.0}
     ).assign(outcome="stands")
@@ -298,7 +296,7 @@ def test_soft_contact_is_identified_by_damping_and_failures_counted(tables: Tabl
     assert (values["runs"], values["runs_ended"], values["given_least"]) == (2, 1, 1.0)
 
 
-def test_measures_of_limits() -> None:
+def test_limits_and_quantiles_handle_infinite_and_unknown_values() -> None:
     points, holds = pd.Series([0.1, 0.1, 0.2, 0.2, 0.3]), pd.Series([True, True, True, False, True])
     assert limit_of(points, holds) == (0.1, 0.2)  # a point needs every row
     np.testing.assert_equal(limit_of(points, holds & False), (math.nan, 0.1))
@@ -309,7 +307,7 @@ def test_measures_of_limits() -> None:
     assert quantile_reached(pd.Series([1.0, 2.0, math.inf]), 0.9) == math.inf
 
 
-def test_lost_contact_is_said_from_where_it_is_lost(tables: Tables) -> None:
+def test_contact_loss_is_reported_from_its_first_slenderness(tables: Tables) -> None:
     peaks = tables["peaks"]
     lost = peaks["least_normal"].mask(peaks["least_normal"].notna() & (peaks["tan_alpha"] > 0.3), -0.1)
     stated = said({**tables, "peaks": peaks.assign(least_normal=lost)})
@@ -320,7 +318,7 @@ def test_lost_contact_is_said_from_where_it_is_lost(tables: Tables) -> None:
     assert values["bound"] == lost[lost > 0.0].min()
 
 
-def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory, tmp_path: Path) -> None:
+def test_validity_has_repr_table_and_plot(tmp_path_factory: pytest.TempPathFactory, tmp_path: Path) -> None:
     validity = tiny_validity(tmp_path_factory.getbasetemp())
     shows_itself(validity, "motions ", "peaks 24 rows")
     loads_as_it_was(validity, tmp_path)
@@ -441,7 +439,7 @@ def test_a_prestress_multiplies_forces_and_leaves_the_friction(prestress: float,
     assert set(tied) == {*alone, "tension"}
 
 
-def test_shaking_is_as_far_beyond_uplift_as_without_a_tendon() -> None:
+def test_intensities_relative_to_uplift_are_unchanged_by_a_tendon() -> None:
     structure = Structure(slab_mass_ratio=0.5, tendon_prestress=1.0)
     assert structure.uplift == 1.0 + 2.0 * 1.0 / 2.0
     assert QUICK.of(structure).intensities == tuple(2.0 * level for level in QUICK.intensities)
@@ -454,7 +452,7 @@ def test_shaking_is_as_far_beyond_uplift_as_without_a_tendon() -> None:
 
 
 @pytest.mark.checkout
-def test_findings_count_what_the_published_tables_hold() -> None:
+def test_findings_match_counts_of_published_tables() -> None:
     loaded = Validity.load(PUBLISHED)
     values, records, rings = said(loaded.tables), loaded.records, loaded.rings.query("support == 'ring'")
     standing = records.query("method == 'ring' and outcome == 'stands'")["peak"]
