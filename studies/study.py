@@ -144,10 +144,10 @@ class Study(Generic[T, R]):
                 save(results)
         return results
 
-    def _tables(self, tasks: Sequence[T], outcomes: Sequence[pd.DataFrame | FailedTask]) -> list[pd.DataFrame]:
+    def _tables(self, tasks: Sequence[T], parts: Sequence[pd.DataFrame | FailedTask]) -> list[pd.DataFrame]:
         tables: list[pd.DataFrame] = []
         died: list[str] = []
-        for task, each in zip(tasks, outcomes, strict=True):
+        for task, each in zip(tasks, parts, strict=True):
             table = self.lost(task, each.why) if isinstance(each, FailedTask) else each
             if table is not None:
                 tables.append(table)

@@ -357,41 +357,41 @@ def main() -> int:
     given = parser.parse_args()
     case, reason = Case(cases[given.case]), ""
     try:
-        judgement = judged(case, given.trajectory)
+        found = judged(case, given.trajectory)
     except ValueError as error:
-        judgement, reason = Judgement((), (), ()), str(error)
+        found, reason = Judgement((), (), ()), str(error)
     asked = len(case.accept["criteria"])
-    print(f"{given.case}: {judgement.verdict} ({judgement.grade}), judged {judgement.judged} of {asked} criteria")
-    notes = [reason, f"columns not read: {name_list(judgement.columns_not_read)}" * bool(judgement.columns_not_read)]
-    for one in judgement.outcomes:
+    print(f"{given.case}: {found.verdict} ({found.grade}), judged {found.judged} of {asked} criteria")
+    notes = [reason, f"columns not read: {name_list(found.columns_not_read)}" * bool(found.columns_not_read)]
+    for one in found.outcomes:
         limits = "exact {:.2g}, good {:.2g}, pass {:.2g}".format(*one.bounds)
         value = f" {one.error:.3g} {one.unit} (run {one.run}; {limits})" if one.run else ""
         notes.append(f"{one.name}: {one.level}{value}")
-    notes += [f"likely mistake: {mistake.words}" for mistake in judgement.mistakes]
+    notes += [f"likely mistake: {mistake.words}" for mistake in found.mistakes]
     print(*(f"  {note}" for note in notes if note), sep="\n")
     criteria = [
         asdict(one) | {"level": one.level, "error": one.error if one.error < math.inf else None}
-        for one in judgement.outcomes
+        for one in found.outcomes
     ]
     result = {
         "schema": "result/1",
         "case": given.case,
         "label": given.label,
-        "verdict": judgement.verdict,
-        "grade": judgement.grade,
-        "judged": [judgement.judged, asked],
+        "verdict": found.verdict,
+        "grade": found.grade,
+        "judged": [found.judged, asked],
         "reason": reason,
         "criteria": criteria,
-        "columns_not_read": judgement.columns_not_read,
-        "likely_mistakes": [mistake.words for mistake in judgement.mistakes],
+        "columns_not_read": found.columns_not_read,
+        "likely_mistakes": [mistake.words for mistake in found.mistakes],
         "mistakes": [
-            asdict(one) | {"value": None if math.isnan(one.value) else one.value} for one in judgement.mistakes
+            asdict(one) | {"value": None if math.isnan(one.value) else one.value} for one in found.mistakes
         ],
         "check": "2",
         "reference_sha256": case.digest,
     }
     given.out.write_text(json.dumps(result, indent=1) + "\n", "utf-8")
-    return {"not satisfied": 1, "not tested": 2}.get(judgement.grade, 0)
+    return {"not satisfied": 1, "not tested": 2}.get(found.grade, 0)
 
 
 if __name__ == "__main__":
