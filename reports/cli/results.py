@@ -177,9 +177,9 @@ def report(
             raise ValueError(
                 f"the folder {place} holds {listed}: choose another by --out, or write there by --overwrite"
             )
-        drawn = {kind: stored_page(kind, folder) for kind in kinds}
+        by_kind = {kind: stored_page(kind, folder) for kind in kinds}
         drawn = {
-            kind: {**page.files(), **page.exports(drawings, width=inches)} for kind, page in drawn.items()
+            kind: {**page.files(), **page.exports(drawings, width=inches)} for kind, page in by_kind.items()
         }
         if data:
             if Fragility.kind not in drawn:
