@@ -23,7 +23,7 @@ C = TypeVar("C", bound=Callable[..., Any])
 
 
 def with_argument_kinds(function: C) -> C:
-    """Return the function, or the class, that raises ValueError for an argument its annotations exclude."""
+    """Decorator of a function or a class: ValueError for an argument that its annotations exclude."""
     if isinstance(function, type):
         made: Any = function
         made.__init__ = with_argument_kinds(made.__init__)
@@ -44,7 +44,7 @@ def with_argument_kinds(function: C) -> C:
 
 
 class _AnyKind:
-    """A name that only type checkers know."""
+    """Stand-in for a name that only type checkers know, which allows every argument."""
 
     def __class_getitem__(cls, item: object) -> Any:
         return Any
@@ -56,7 +56,7 @@ class _AnyText:
 
 
 class _Names(dict[str, Any]):
-    """Names of a module and of Python as pydantic takes them: a class by its instances."""
+    """Namespace of a module and of Python for pydantic, in which a class stands for its instances."""
 
     def __missing__(self, name: str) -> Any:
         return getattr(builtins, name, _AnyKind)
@@ -85,7 +85,7 @@ def _check(parameter: inspect.Parameter, function: Callable[..., Any]) -> Callab
         return lambda value: value
     from pydantic import TypeAdapter, ValidationError
 
-    from .number_checks import quoted  # imports numpy, which help can do without
+    from .number_checks import quoted  # imports numpy, which the help of a command does not need
 
     kind = eval(stated, {}, _Names(inspect.unwrap(function).__globals__))
     if kind is _AnyKind:
@@ -111,7 +111,7 @@ _READ_TWICE = (str, bytes, Sequence, Mapping)
 
 
 def _plain(value: Any) -> object:
-    """Return arrays, columns of tables and scalars of numpy as lists and numbers of Python."""
+    """Lists and Python numbers in place of arrays, table columns and numpy scalars."""
     if hasattr(value, "dtype") and hasattr(value, "tolist"):
         return value.tolist()
     return [_plain(each) for each in value] if isinstance(value, list | tuple | range) else value

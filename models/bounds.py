@@ -1,4 +1,4 @@
-"""Bounds on differences of motions: what ends an agreement, and what a suite asks of its runs."""
+"""Bounds on differences of motions: end of an agreement, and limits that a suite sets for its runs."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from .support import MODELLED
 
 # tilt difference that ends an agreement [alpha]
 AGREEMENT = 0.01
-# tilt below which the base counts as closed: no demand is taken there [alpha]. The rim has lifted by two
-# thousandths of alpha b or less, to which ground and joint give way before they feel the edge of a rigid body
+# tilt below which the base counts as closed, without demands [alpha]. The rim has lifted by two thousandths
+# of alpha b or less, which ground and joint absorb before they meet the edge of a rigid body
 CLOSED_TILT = 1e-3
 # tilt at which the side lies on the ground: the end and the peak of a run that overturns [rad]
 OVERTURNED_TILT = 0.5 * math.pi
@@ -69,6 +69,6 @@ class Bounds(CompactRepr):
         require_one_of("reference", self.reference, REFERENCES)
 
     def as_dict(self) -> dict[str, float]:
-        """Return the bounds that ask something, by column."""
+        """Bounds other than None, by column."""
         names = (field.name for field in fields(self) if field.name != "reference")
         return {name: value for name in names if (value := getattr(self, name)) is not None}

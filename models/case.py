@@ -67,7 +67,7 @@ class InitialState(CompactRepr):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Case:
-    """One problem: a cylinder or a frame, what moves it, and for how long.
+    """One problem: a body, its ground motion or release, and the duration.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Case:
             object.__setattr__(self, "name", name or "record")
         if not isinstance(self.name, str) or self.name.splitlines() != [self.name]:
             raise ValueError(f"the name of a case must be one line, got {quoted(self.name)}")
-        # kept as it was given, so that a copy with another motion follows that motion
+        # duration as given, so that a copy with another motion takes the duration of that motion
         run_duration(self.motion, self.duration)
 
     def __repr__(self) -> str:
@@ -188,7 +188,7 @@ class Case:
 
     @property
     def friction_at_rest(self) -> float:
-        """Largest friction demand at the base while it stays closed [-]; inf where it carries no weight.
+        """Largest friction demand at the base while it stays closed [-]; inf where the normal force vanishes.
 
         ``|a_xy| / (g + a_z)``, with the prestress of a tendon. Exact: between samples it is quasi-convex.
         """
@@ -205,7 +205,7 @@ class Case:
 
     @property
     def friction_of_uplift(self) -> float:
-        """Friction below which it slides before it can uplift [-]: b/h, more under a slab with a tendon."""
+        """Friction below which a body slides before it uplifts [-]: b/h, more under a slab with a tendon."""
         body, tendon = self.cylinder, self.tendon
         if tendon is None:
             return body.tan_alpha
@@ -214,7 +214,7 @@ class Case:
 
     @property
     def uplifts(self) -> bool:
-        """Whether the shaking uplifts it from rest where nothing slides. Exact: convex between samples."""
+        """Whether the shaking uplifts the body from rest without sliding. Exact: convex between samples."""
         if self.motion is None:
             return False
         acceleration, body = self.motion.until(self.length), self.cylinder
@@ -225,7 +225,7 @@ class Case:
 
     @property
     def is_release(self) -> bool:
-        """Whether it starts tilted."""
+        """Whether the run starts tilted."""
         return self.initial is not None and self.initial.tilt > 0.0
 
 
@@ -235,7 +235,7 @@ TERMS = tuple(each.name for each in fields(Case) if each.name not in _OF_THE_PAP
 
 
 def run_duration(motion: GroundMotion | None, duration: float | None) -> float:
-    """Return the length of a run [s]: `duration` where given, else that of the motion.
+    """Length of a run [s]: `duration` where given, else that of the motion.
 
     Parameters
     ----------
@@ -267,9 +267,9 @@ def run_duration(motion: GroundMotion | None, duration: float | None) -> float:
 
 _Way = Literal["auto", "extrapolated"]
 WAYS_TO_A_STEP: tuple[_Way, ...] = ("auto", "extrapolated")
-#: Time step of an engine [s], or the way to one.
+#: Time step of an engine [s], or the name of a method that chooses it.
 TimeStep = float | _Way | None
-REDUCED = "reduced"  # the engine of a reduced model, in tables
+REDUCED = "reduced"  # engine name of a reduced model, in tables
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
@@ -352,7 +352,7 @@ class Run:
 
     @property
     def loses_at_impact(self) -> bool:
-        """Whether it is the planar model whose base closes by the moment of momentum."""
+        """Whether it is the planar model in which each impact conserves the moment of momentum."""
         return self.is_planar and self.settings.get("restitution") == "momentum"
 
     @property
@@ -362,7 +362,7 @@ class Run:
 
     @property
     def compared_with(self) -> tuple[Run, ...]:
-        """The reduced models that a run of its support is compared with; the last is the nearest to it."""
+        """Reduced models with which a run of its support is compared, the nearest to it last."""
         return tuple(Run(None, support) for support in self.support.compared_with)
 
     @property
@@ -374,7 +374,7 @@ class Run:
         return hash((self.engine, self.support, self.time_step, frozenset(self.settings.items())))
 
     def __reduce__(self) -> tuple[object, ...]:
-        # a mapping proxy does not pickle, and runs travel to worker processes
+        # a mapping proxy cannot be pickled for a worker process
         return partial(Run, **self.settings), (self.engine, self.support, self.time_step)
 
 

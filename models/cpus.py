@@ -13,14 +13,14 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-_TASKS = 8  # tasks of a grid for each thread, so that all end at about the same time
+_TASKS = 8  # tasks of a grid for each thread, so that the threads finish at about the same time
 
 # quota of a container: microseconds of computing in a period, or "max"
 _QUOTA = Path("/sys/fs/cgroup/cpu.max")
 
 
 def usable_cpus() -> int:
-    """Return the number of processors that this process may use: in a container or a job not all."""
+    """Number of processors that this process may use, which a container or a job limits."""
     allowed = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     try:
         quota, period = _QUOTA.read_text().split()
@@ -32,7 +32,7 @@ def usable_cpus() -> int:
 def in_threads(
     function: Callable[..., T], *arguments: Iterable[object], workers: int | None = None
 ) -> Generator[T, None, None]:
-    """Yield the values of a compiled function for each of its arguments, in order; an exception ends all."""
+    """Values of a compiled function for each of its arguments, in order; an exception ends all."""
     with ThreadPoolExecutor(usable_cpus() if workers is None else workers) as pool:
         try:
             yield from pool.map(function, *arguments)
@@ -44,7 +44,7 @@ def in_threads(
 def grid_in_threads(
     fill: Callable[[int, slice], None], shape: tuple[int, ...], workers: int | None = None
 ) -> Generator[float, None, None]:
-    """Fill a grid (rows, columns) in threads, each with some rows of a column; yield the share that is done.
+    """Fill a grid (rows, columns) in threads, each with some rows of a column; yield the finished share.
 
     The rows of a task share the preparation of their column, which takes as long as a short run.
     """

@@ -79,17 +79,17 @@ class RockingBody(CompactRepr):
 
     @property
     def carries_slab(self) -> bool:
-        """Whether a slab lies on it, be its mass 0, so that it rocks on both its ends."""
+        """Whether a slab, even of mass 0, lies on the body, so that it rocks on both its ends."""
         return isinstance(self, WobblingFrame)
 
     @property
     def slab_mass_ratio(self) -> float:
-        """Mass of the slab over that of the columns under it [-]: 0 where there is none."""
+        """Mass of the slab over that of the columns under it [-]: 0 without a slab."""
         return 0.0
 
     @property
     def columns(self) -> int:
-        """Number of columns that make the one motion."""
+        """Number of columns that move together."""
         return 1
 
 
@@ -178,7 +178,7 @@ class Cylinder(RockingBody):
         )
 
 
-# beyond it the columns weigh no more than rounding: the motion is that of a slab alone
+# largest mass ratio: beyond it the mass of the columns is rounding, and the slab moves alone
 LARGEST_SLAB_MASS_RATIO = 1e15
 
 
@@ -213,7 +213,7 @@ class WobblingFrame(RockingBody):
     WobblingFrame(Cylinder(semidiagonal=6, tan_alpha=0.2), slab_mass_ratio=2, columns=3)
     """
 
-    # `field()`: no default, where the body has a property of the name
+    # `field()` without a default, as the body has a property of this name
     slab_mass_ratio: float = field()
     columns: int = field()
 
@@ -252,12 +252,12 @@ class WobblingFrame(RockingBody):
         return Cylinder(**{each.name: getattr(self, each.name) for each in fields(Cylinder)})
 
 
-# the pier on which engines and studies are measured; others scale from it (Froude)
+# the pier at which engines and studies are measured; others scale from it (Froude)
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 def cylinder_of(values: Facts, make: Callable[..., Cylinder] = Cylinder) -> RockingBody:
-    """Body of stored values: `make` builds the cylinder, in a frame where there are values of a slab."""
+    """Body from stored values: `make` builds the cylinder, in a frame where there are values of a slab."""
     slab = {name: values[name] for name in ("slab_mass_ratio", "columns") if name in values}
     cylinder = make(**{name: value for name, value in values.items() if name not in slab})
     return WobblingFrame(cylinder, **slab) if slab else cylinder

@@ -1,4 +1,4 @@
-"""Facts about one motion by their code: what ended it, what limits it, what it asks of ground and recess."""
+"""Diagnostics of a motion by code: its end, its limits, its demands on ground and recess."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .argument_kinds import with_argument_kinds
 from .finding import Finding, Findings
 from .shown import CompactRepr
 
-# unit of size and bound, where they have one
+# units of size and bound, where they have one
 _UNITS = {
     "weights": "weightless tension tendon_yield unlikely_tendon",
     "steps": "step_budget solver",
@@ -28,11 +28,11 @@ def _with_units(codes: str) -> Mapping[str, str]:
     return MappingProxyType({code: _UNIT_OF.get(code, "") for code in codes.split()})
 
 
-# code: unit of size and bound; why a run failed
+# code: units of size and bound, for reasons why a run failed
 FAILURES = _with_units(
     "not_finite energy_gain penetration wall_penetration guide warning died step_budget tolerance weightless"
 )
-# and of every diagnostic: what limits a run, and doubts about a record, a number that the user gave (length,
+# the same for every diagnostic: limits of a run, and doubts about a record, a number of the user (length,
 # gravity, mass, tendon), and an external trajectory
 CODES = _with_units(
     f"{' '.join(FAILURES)} slip lift_off tension friction_needed wall_contact energy rolling_loss undecided "
@@ -43,7 +43,7 @@ CODES = _with_units(
     "offset gravity_in_record unlikely_step ends_in_strong_motion other_direction "
     "note missed_pass"
 )
-# code: why, as its detail says it
+# code: reason, as its detail states it
 REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "large_peak": ("", "m/s2", "cm/s2", "m/s2 for g", "cm/s2 for g", "cm/s2 for m/s2"),
@@ -64,7 +64,7 @@ _SEPARATOR = ", "
 
 
 def cell_of(codes: Iterable[str]) -> str:
-    """Return codes, each once, as a cell of a table.
+    """Codes, each once, as a table cell.
 
     Examples
     --------
@@ -133,17 +133,17 @@ class Diagnostic(CompactRepr):
             raise ValueError(f"detail must be one of {', '.join(reasons)}, got {self.detail!r}")
         for name in ("time", "duration", "size", "bound"):
             value = float(getattr(self, name))
-            # one NaN, which is itself: facts that say the same are equal
+            # one NaN object, so that equal facts compare equal
             object.__setattr__(self, name, math.nan if math.isnan(value) else value)
 
     def finding(self) -> Finding:
-        """The fact as a finding."""
+        """Diagnostic as a finding."""
         values = {name: getattr(self, name) for name in ("time", "duration", "size", "bound", "detail")}
         return Finding(key=f"diagnostic.{self.code}", values=values)
 
     @property
     def meaning(self) -> str:
-        """The fact in words."""
+        """Meaning of the code in words."""
         return repr(Findings([self.finding()]))
 
 

@@ -1,4 +1,4 @@
-"""Doubts about what a user states: records, lengths, gravity, masses and tendons probably in another unit.
+"""Doubts about the input of a user: records, lengths, gravity, masses and tendons probably in another unit.
 
 Each doubt is a `Diagnostic`, and no error: structures of other sizes, and other planets, can be computed.
 """
@@ -18,33 +18,31 @@ from .ground_motion import GroundMotion
 from .record_source import LARGEST_MEAN, METRES_PER_SECOND_SQUARED, USUAL_UNITS
 from .tendon import Tendon
 
-LARGEST_PEAK = 2.0  # [g]; few records of any earthquake have more, numbers in m/s^2 taken for g mostly do
-LARGEST_SCALED_PEAK = (
-    5.0  # [g], of a record that was scaled; the largest that was ever recorded has about 4 g
-)
-LARGEST_RATIO = 30.0  # ratio of the peaks of two components; gal taken for m/s^2 makes 100, for g 981
+LARGEST_PEAK = 2.0  # [g]; few records of any earthquake have more, most numbers in m/s^2 read as g do
+LARGEST_SCALED_PEAK = 5.0  # [g], for a scaled record; the largest recorded peak is about 4 g
+LARGEST_RATIO = 30.0  # ratio of the peaks of two components; gal read as m/s^2 gives 100, as g 981
 LONGEST_STEP, SHORTEST_STEP = 0.1, 1e-4  # [s]; recorders take 50 to 1000 samples in a second
-_USUAL_PEAK = 0.4  # [g], peak of a strong motion: the unit that brings a peak next to it makes sense
-# a planar motion that was turned has components in proportion, the small one by its azimuth
+_USUAL_PEAK = 0.4  # [g], typical peak of a strong motion: the likely unit brings a peak near to it
+# components of a rotated planar motion are in proportion, the small one by its azimuth
 _PROPORTIONAL = 1e-9
 _GRAVITY = (0.8, 1.2)  # [g], range of a mean that is the weight of the sensor
 _END, _FEWEST_AT_END = 0.02, 3  # end of a record: share of its duration, and least number of samples
 _STRONG = 0.3  # share of the peak that is improbable at the end
-LONGEST, SHORTEST = 300.0, 1e-3  # [m], height or diameter beyond those of structures and of their models
+LONGEST, SHORTEST = 300.0, 1e-3  # [m], limits of the height or diameter of structures and of their models
 LARGEST_GRAVITY = 25.0  # [m/s^2], about that of Jupiter
-# units in which somebody may have stated it, in m and in m/s^2
+# likely units of the user's number, in m and in m/s^2
 LENGTHS: Mapping[str, float] = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "ft": 0.3048, "km": 1e3}
 GRAVITIES: Mapping[str, float] = {"ft/s2": 0.3048, "in/s2": 0.0254, "cm/s2": 1e-2, "mm/s2": 1e-3}
 _USUAL_LENGTH, _USUAL_GRAVITY = 8.0, 9.81  # [m], of a pier, and [m/s^2]
-# [t/m^3], of mass over the volume of the cylinder: from that of foam to that of no metal
+# [t/m^3], mass over the volume of the cylinder: from foam to more than the densest metal
 LIGHTEST, DENSEST = 0.01, 23.0
-# [weights of a column], and these per base radius: a tendon of less holds nothing
+# [weights of a column], and these per base radius: a weaker tendon has no effect
 WEAKEST = {"prestress": 0.02, "stiffness": 0.1}
 STRONGEST = 1e3  # prestress [weights of a column]
 
 
 def doubts_of_cases(cases: Iterable[Case], mass: float | None = None) -> list[dict[str, object]]:
-    """Return the doubts about the input of some cases as plain values for a file.
+    """Doubts about the input of some cases as plain values for a file.
 
     Each is there once; those about lengths and gravity have "cylinder" and "gravity" for a record. `mass`: of
     a cylinder, or of one column [t].
@@ -74,7 +72,7 @@ def doubts_about(
     tendons: Iterable[Tendon | None] = (),
     mass: float | None = None,
 ) -> list[dict[str, object]]:
-    """Return the doubts about motions, cylinders, their mass [t], gravities [m/s^2] and tendons.
+    """Doubts about motions, cylinders, their mass [t], gravities [m/s^2] and tendons.
 
     Of a record that comes several times, as at several scales, each doubt is there once.
     """
@@ -120,7 +118,7 @@ def doubts(motion: GroundMotion) -> tuple[Diagnostic, ...]:
     if any(fact.code == "large_peak" for fact in facts):
         return facts
     peak = motion.peak / METRES_PER_SECOND_SQUARED["g"]
-    if peak > LARGEST_SCALED_PEAK:  # its unit is known: no advice on it
+    if peak > LARGEST_SCALED_PEAK:  # its unit is known, so there is no advice on it
         facts = (*facts, Diagnostic(code="large_peak", size=peak, bound=LARGEST_SCALED_PEAK))
     return facts
 
@@ -153,14 +151,14 @@ def doubts_as_read(
 
 
 def _peak_doubts(acceleration: NDArray[np.float64], units: Sequence[str] = ()) -> Iterator[Diagnostic]:
-    """Yield doubts about peaks: "large_peak", "unlike_components"."""
+    """Doubts about peaks: "large_peak", "unlike_components"."""
     peaks = np.abs(acceleration).max(axis=0)
     resultant = float(np.hypot(acceleration[:, 0], acceleration[:, 1]).max())
     peak = max(resultant, float(peaks.max())) / METRES_PER_SECOND_SQUARED["g"]
     if peak > LARGEST_PEAK:
         used = units[int(peaks.argmax())] if units else None
         metre, reads = METRES_PER_SECOND_SQUARED, ("g", "m/s2") if used is None else (used,)
-        # where a file states another unit, such as ft/s2, it does so in full: then no other is likely
+        # a file in another unit, such as ft/s2, states it in full: then no other is likely
         smaller = {
             unit: metre[unit] / metre[read]
             for read in reads
@@ -222,7 +220,7 @@ def _of_places(directions: Sequence[str | None]) -> Iterator[Diagnostic]:
 
 
 def _length_doubts(cylinder: RockingBody) -> Iterator[Diagnostic]:
-    """Yield the doubt about a height or a base diameter beyond those of structures: "unlikely_length".
+    """Doubt about a height or a base diameter beyond those of structures: "unlikely_length".
 
     Its size is the length [m], its bound the limit that it exceeds or falls below, its detail the unit that
     would make sense.
@@ -236,14 +234,14 @@ def _length_doubts(cylinder: RockingBody) -> Iterator[Diagnostic]:
 
 
 def _gravity_doubts(gravity: float) -> Iterator[Diagnostic]:
-    """Yield the doubt about a gravity beyond that of planets: "unlikely_gravity", as of lengths."""
+    """Doubt about a gravity beyond that of planets: "unlikely_gravity", with its likely unit."""
     if gravity > LARGEST_GRAVITY:
         unit = _likely_unit(gravity, GRAVITIES, _USUAL_GRAVITY)
         yield Diagnostic(code="unlikely_gravity", size=gravity, bound=LARGEST_GRAVITY, detail=unit)
 
 
 def _mass_doubts(cylinder: RockingBody, mass: float | None) -> Iterator[Diagnostic]:
-    """Yield the doubt about a mass [t] that no solid has in this volume: "unlikely_mass", size in t/m3."""
+    """Doubt about a mass [t] beyond that of any solid of this volume: "unlikely_mass", size in t/m3."""
     if mass is None:
         return
     density = mass / (math.pi * cylinder.base_radius**2 * 2.0 * cylinder.half_height)
@@ -252,7 +250,7 @@ def _mass_doubts(cylinder: RockingBody, mass: float | None) -> Iterator[Diagnost
 
 
 def _tendon_doubts(tendon: Tendon) -> Iterator[Diagnostic]:
-    """Yield the doubt about a prestress or a stiffness that no tendon has: "unlikely_tendon", its detail."""
+    """Doubt about a prestress or a stiffness beyond those of tendons: "unlikely_tendon", with its detail."""
     for name, least in WEAKEST.items():
         size = getattr(tendon, name)
         most = STRONGEST if name == "prestress" else math.inf
@@ -263,7 +261,7 @@ def _tendon_doubts(tendon: Tendon) -> Iterator[Diagnostic]:
 
 
 def _likely_unit(number: float, units: Mapping[str, float], usual: float) -> str:
-    """Return the unit in which a number is closest to usual values."""
+    """Unit in which a number is closest to usual values."""
     return min(units, key=lambda unit: abs(math.log(number * units[unit] / usual)))
 
 

@@ -15,17 +15,17 @@ from .shown import CompactRepr
 if TYPE_CHECKING:
     import pandas as pd
 
-_WRITERS = "rockwobble.words"  # group of entry points: who has words for findings registers there
+_WRITERS = "rockwobble.words"  # group of entry points in which a package with the words of findings registers
 
 Level = Literal["note", "satisfied", "not tested", "caution", "not satisfied"]
 Grade = Literal["satisfied", "not tested", "caution", "not satisfied"]
-#: Grades, the best first; a finding that grades nothing is a note.
+#: Levels, the best first; a finding without a grade is a note.
 GRADES: tuple[Grade, ...] = ("satisfied", "not tested", "caution", "not satisfied")
 #: A number, a text, a list of texts, or a number with the ends of its 95 % interval.
 Value = float | int | str | tuple[str, ...] | tuple[float, float, float] | None
 
-#: Unit and meaning of each value that a finding may have, by its name; a name may end in a number or in
-#: `_` and a word that tells two of one kind apart, as ``share_vertical``.
+#: Unit and meaning of each value of a finding, by its name; a name may end in a number or in
+#: `_` and a word that distinguishes two of one kind, as ``share_vertical``.
 QUANTITIES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         # value of a finding: (unit, meaning)
@@ -132,7 +132,7 @@ class Finding(CompactRepr):
 
 
 class Findings(tuple[Finding, ...]):
-    """Findings in order of weight; the repr is their text as a page has it."""
+    """Findings in order of weight; the repr is their text on a page."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""pandas, imported when the first table is made or asked for (a third of a second), and columns of tables."""
+"""pandas, imported with the first table (a third of a second), and columns of tables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 else:
 
     class _Pandas:
-        """The package by its names: a lazy module would show a second thread those that are there so far."""
+        """Names of pandas on first use; a lazy module would show a second thread a part of its names."""
 
         def __getattr__(self, name: str) -> object:
             import pandas

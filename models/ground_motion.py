@@ -86,7 +86,8 @@ class GroundMotion:
         return own == others and np.array_equal(self.acceleration, other.acceleration)
 
     def __hash__(self) -> int:
-        # some hundred samples: a run asks several times, and to hash all of a record took a tenth of it
+        # hash of some hundred samples: a run asks for it several times, and a hash of all took a tenth of its
+        # time
         some = self.acceleration[:: 1 + len(self.acceleration) // 100]
         return hash((self.time_step, self.name, self.acceleration.shape, some.tobytes()))
 
@@ -96,12 +97,12 @@ class GroundMotion:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Doubts about a record as it was read, see `RecordSource.doubts`; none without a source."""
+        """Doubts about a record as read, see `RecordSource.doubts`; none without a source."""
         return self.source.doubts if self.source else ()
 
     @property
     def synthetic(self) -> bool:
-        """Whether it says that nobody recorded it: a synthetic motion, or a pulse."""
+        """Whether the motion is synthetic or a pulse, not recorded."""
         return self.source is not None and self.source.synthetic
 
     @property
@@ -146,7 +147,7 @@ class GroundMotion:
         GroundMotion
         """
         factor = require_finite("factor", factor, "")
-        with np.errstate(over="ignore"):  # the constructor refuses what is not finite
+        with np.errstate(over="ignore"):  # the constructor refuses infinite samples
             scaled = self.acceleration * factor
         return self if factor == 1.0 else self.with_samples(scaled, f"scaled by {factor:.6g}")
 
@@ -198,7 +199,7 @@ class GroundMotion:
 
 
 def sources_of(motions: Iterable[GroundMotion | None]) -> list[str]:
-    """Source of each ground motion in a line; each once, without motions of no file."""
+    """Source of each ground motion in a line, without repeats and without motions that have no file."""
     lines = (
         f"{motion.name or 'record'}: {motion.source.line}"
         for motion in motions

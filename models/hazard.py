@@ -41,7 +41,7 @@ HAZARD_MEASURES: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 _SPECTRAL = ("sa", "sa_mean")
-# g or m/s: half of a site's curve above it is rather one in another unit
+# [g] or [m/s]: a curve with half of its points above is probably in another unit
 LARGEST_MIDDLE = 3.0
 
 
@@ -261,7 +261,7 @@ def read_hazard(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Given:
-    """Statements of the caller about a file, which it may confirm."""
+    """Statements of the caller about a file, which the file may confirm or contradict."""
 
     kind: str
     period: float | None
@@ -269,7 +269,7 @@ class _Given:
     years: float | None
 
     def unit_beside(self, title: str) -> str | None:
-        """Unit that the title of an intensity states, which must be of the kind, period and unit given."""
+        """Unit in the title of an intensity, which must be of the kind, period and unit given."""
         match = _INTENSITY.fullmatch(_plain(title))
         stated = match and match["unit"]
         unit = _unit(stated) if stated else None
@@ -290,7 +290,7 @@ class _Given:
         return unit
 
     def frequencies(self, quantity: str, stated: float | None, values: Array) -> tuple[Array, str]:
-        """Annual frequencies, infinite of a probability of 1, and what the values are in words."""
+        """Annual frequencies, infinite for a probability of 1, and the quantity of the values in words."""
         if (values < 0.0).any():
             raise ValueError(f"values must not be negative, got {values.min():g}: a logarithm?")
         if "probability" not in quantity:
@@ -313,7 +313,7 @@ class _Given:
 
 
 def _columns(given: _Given, text: str, site: int | None) -> tuple[Array, Array, str, str]:
-    """Levels, annual frequencies, unit of the levels, and what the file says of them."""
+    """Levels, annual frequencies, unit of the levels, and the statements of the file about them."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     data = [line for line in lines if not line.startswith("#")]
     rows, comments = [_cells(line) for line in data], [line for line in lines if line not in data]
@@ -362,7 +362,7 @@ def _columns(given: _Given, text: str, site: int | None) -> tuple[Array, Array, 
 def _openquake(
     given: _Given, comment: str, rows: list[list[str]], site: int | None
 ) -> tuple[Array, Array, str, str]:
-    """Read the CSV of OpenQuake: a comment with imt and investigation_time, then a site a line."""
+    """Curve from the CSV of OpenQuake: a comment with imt and investigation_time, then a site a line."""
     stated = dict(re.findall(r"(\w+)='?([^',\"]+)'?", comment))
     head, *sites = rows or [[]]
     places = [at for at, cell in enumerate(head) if cell.startswith("poe-")]
@@ -423,7 +423,7 @@ def _cells(line: str) -> list[str]:
 
 
 def _number(cell: str) -> float:
-    """Number with a point or a comma, NaN of anything else, as of a comma that may part thousands."""
+    """Number with a point or a comma; NaN for other text, also for a comma that may separate thousands."""
     try:
         return math.nan if _THOUSANDS.fullmatch(cell) else float(cell.replace(",", "."))
     except ValueError:

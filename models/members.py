@@ -27,7 +27,7 @@ from .case import Case
 from .ground_motion import GroundMotion
 from .number_checks import require_in_range
 
-# a copy further off is another problem, and a factor could change its sign
+# a larger perturbation makes another problem, and a factor could change its sign
 MOST_PERTURBED = 0.1
 
 
@@ -75,7 +75,7 @@ def perturbed_copies(case: Case, count: int, *, perturbation: float, seed: int) 
 
 
 def perturbed(case: Case, first: float, second: float) -> Case:
-    """Return a release with its tilt and rolling rate, or a motion with its two components, times factors."""
+    """Release with its tilt and rolling rate, or motion with its two components, times factors."""
     initial, motion = case.initial, case.motion
     if initial is not None and initial.tilt > 0.0:
         released = dataclasses.replace(
@@ -91,7 +91,7 @@ def perturbed(case: Case, first: float, second: float) -> Case:
 
 
 def perturbed_in_strength(case: Case, relative: float) -> Case:
-    """Return a copy whose ground motion is stronger by a relative change, or whose release tilts more."""
+    """Copy whose ground motion is stronger by a relative change, or whose release tilts more."""
     factor, motion, initial = 1.0 + relative, case.motion, case.initial
     if motion is not None:
         return dataclasses.replace(case, motion=motion.scaled(factor))
@@ -101,7 +101,7 @@ def perturbed_in_strength(case: Case, relative: float) -> Case:
 
 
 def perturbed_in_gravity(case: Case, relative: float) -> Case:
-    """Return a copy whose gravity is off by a relative change."""
+    """Copy whose gravity differs by a relative change."""
     return dataclasses.replace(case, gravity=case.gravity * (1.0 + relative))
 
 

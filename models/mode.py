@@ -1,4 +1,4 @@
-"""Modes of motion, and the one that friction, slenderness, support and shaking let a case have."""
+"""Modes of motion, and the mode expected by friction, slenderness, support and shaking."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from .support import support_named
 REST, SLIDES, ROCKS = "rest", "slides", "rocks"
 ROCKS_IN_PLANE, ROCKS_AND_SLIDES = "rocks in one plane", "rocks and slides"
 MODES = (REST, SLIDES, ROCKS, ROCKS_IN_PLANE, ROCKS_AND_SLIDES)
-# Over `Case.friction_of_uplift`: what uplifts below it slides as well, since no friction is known so well.
+# ratio to `Case.friction_of_uplift` below which an uplifting body slides as well, as friction is never known
+# exactly
 BORDER = 1.1
 
 # A motion is in one plane if it leaves it by no more than a few roundings of its peak.
@@ -23,7 +24,7 @@ PLANE_TOLERANCE = 32.0 * float(np.finfo(float).eps)
 
 
 def expected_mode(case: Case, support: str) -> str:
-    """Mode of motion that the mechanics lets a case have, before any run.
+    """Mode of motion expected by mechanics, before any run.
 
     From rest on flat ground the smaller of friction and b/h decides: below b/h friction can never lift the
     base and never turns it, so it slides; from there to 1.1 b/h it rocks and may slide.
@@ -76,7 +77,7 @@ def plane_of(case: Case) -> float | None:
 
 
 def wall_force(case: Case) -> float:
-    """Largest force that a closed base asks of the walls about it, beside friction, over the weight [-]."""
+    """Largest horizontal force of a closed base on walls, beyond friction, over the weight [-]."""
     if case.motion is None or case.is_release:
         return 0.0
     acceleration, border = case.motion.until(case.length), case.friction_of_uplift

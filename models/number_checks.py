@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from .shown import brief
 
 MOST_SAMPLES = 10_000_000  # limit for one trace: some gigabytes
-_MOST = 70  # characters of a value that is quoted
+_MOST = 70  # characters of a quoted value
 
 
 def require_positive(name: str, value: object, unit: str = "") -> float:
@@ -35,7 +35,7 @@ def require_not_negative(name: str, value: object, unit: str = "") -> float:
 def require_finite(name: str, value: object, unit: str) -> float:
     """Return `value` as a float, or raise ValueError unless it is a finite real number."""
     try:
-        # text is refused even where it spells a number, because it would be kept as text; a truth is no size
+        # text is refused even where it spells a number, as it would be stored as text; a bool is no size
         number = math.nan if isinstance(value, str | bytes | bool | np.bool_) else float(cast("float", value))
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be a finite number{_in(unit)}, got {quoted(value)}") from None
@@ -99,7 +99,7 @@ def require_sample_step(sample_step: float, duration: float) -> float:
 
 
 def require_numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    """Return an array of numbers as it is shaped, or raise ValueError unless all are real numbers."""
+    """Array of real numbers in its shape; ValueError unless all are real."""
     try:
         # numpy would drop an imaginary part
         found = None if np.iscomplexobj(values) else np.array(values, dtype=np.float64)
@@ -111,7 +111,7 @@ def require_numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
 
 
 def require_increasing(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    """Return a read-only array (n,), or raise ValueError unless it is positive, finite and increasing."""
+    """Read-only array (n,); ValueError unless it is positive, finite and increasing."""
     found = require_numbers(name, values)
     good = found.ndim == 1 and found.size and found[0] > 0.0 and (np.diff(found) > 0.0).all()
     if not (good and np.isfinite(found).all()):
@@ -137,7 +137,7 @@ def require_each(name: str, values: object, kind: type) -> None:
 
 
 def quoted(value: object) -> str:
-    """Return a bad value for a message: itself, or its kind where that would be longer than a line."""
+    """A bad value for a message: itself, or its kind where that would be longer than a line."""
     text = repr(value)
     return text if len(text) <= _MOST and "\n" not in text else brief(value)
 

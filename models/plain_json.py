@@ -1,4 +1,4 @@
-"""JSON that keeps every float to the last bit, and those that JSON has no word for."""
+"""JSON with every float to the last bit, also NaN and infinities, which JSON lacks."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ import numpy as np
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-#: An object of JSON: who stored it knows what its members are.
+#: JSON object whose members are known where it was stored.
 JsonObject = dict[str, Any]
-#: What results or a motion say beside their tables, as JSON gives it back.
+#: Facts of results or of a motion besides their tables, as read from JSON.
 Facts = Mapping[str, Any]
 _FLOAT = "float"
-JsonValue = Any  # an object, a list, a text, a number, a truth or None
+JsonValue = Any  # an object, a list, a text, a number, a bool or None
 
 
 def dumps(value: object, *, indent: int | None = None) -> str:
@@ -40,7 +40,7 @@ def fields_of(value: DataclassInstance) -> JsonObject:
 
 
 def plain(value: object) -> JsonValue:
-    """Return a value as `loads` gives it back: of mappings, lists, texts, numbers and None alone.
+    """Value as `loads` returns it: mappings, lists, texts, numbers and None only.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def plain(value: object) -> JsonValue:
 
 
 def first_not_plain(value: object, place: str) -> str | None:
-    """Return the place and type of the first value that `plain` changes; None where it changes none.
+    """Place and type of the first value that `plain` changes; None if there is none.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def first_not_plain(value: object, place: str) -> str | None:
 
 
 def _in_words(value: JsonValue) -> JsonValue:
-    """Return a plain value with a word for each float that JSON has none for."""
+    """Plain value with a word for each float that JSON lacks."""
     if isinstance(value, dict):
         return {key: _in_words(item) for key, item in value.items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Source of a ground motion: what was read from which file, and what was done to it since."""
+"""Source of a ground motion: its files, and the changes since it was read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .diagnostic import Diagnostic
 from .plain_json import Facts
 
-# a mean above this part of the peak is said beside it, and doubted: an offset that was not removed
+# a mean above this share of the peak is stated and doubted: an offset that was not removed
 LARGEST_MEAN = 0.05
 # 1 g is 9.81 m/s^2, the default gravity of every model here, so that a/g stays what the file says
 STANDARD_GRAVITY = 9.81
@@ -24,7 +24,7 @@ METRES_PER_SECOND_SQUARED = _USUAL | {
 UNITS = tuple(METRES_PER_SECOND_SQUARED)
 USUAL_UNITS = tuple(_USUAL)
 ALLOWED_UNITS = ", ".join(UNITS)
-SYNTHETIC, PULSE = "synthetic", "pulse"  # formats of motions that nobody recorded
+SYNTHETIC, PULSE = "synthetic", "pulse"  # formats of motions that were not recorded
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,12 +98,12 @@ class RecordSource:
 
     @property
     def synthetic(self) -> bool:
-        """Whether nobody recorded it."""
+        """Whether the motion was not recorded."""
         return self.format in (SYNTHETIC, PULSE)
 
     @property
     def from_files(self) -> bool:
-        """Whether a file of the user holds it."""
+        """Whether the motion is from a file of the user."""
         return any(part.file for part in self.components)
 
     @property
@@ -121,14 +121,14 @@ class RecordSource:
         return "; ".join((facts, *parts, *self.notes, *self.changes))
 
     def with_change(self, change: str) -> RecordSource:
-        """Return the source of a motion that was made of this one by `change`."""
+        """Source of a motion derived from this one by `change`."""
         return replace(self, changes=(*self.changes, change))
 
 
 def source_of_samples(
     kind: str, acceleration: NDArray[np.float64], time_step: float, *, labels: Sequence[str] = ("", "", "")
 ) -> RecordSource:
-    """Return the source of samples that no file of the user holds.
+    """Source of samples that are not from a file of the user.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def _component(part: ComponentSource, *, named: bool) -> str:
 
 
 def source_from_plain(given: Facts | None) -> RecordSource | None:
-    """Return a source of its fields, as JSON gives them back."""
+    """Source from its fields, as read from JSON."""
     if given is None:
         return None
     fields = {

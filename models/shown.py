@@ -13,13 +13,13 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_DRAWERS = "rockwobble.figures"  # group of entry points: who draws registers there
+_DRAWERS = "rockwobble.figures"  # group of entry points in which a package that draws registers
 LONGEST = 110  # characters of a repr: a line
-_FEW, _MOST = 3, 70  # items, and characters of one fact, that are shown themselves
+_FEW, _MOST = 3, 70  # items, and characters of one fact, that are shown in full
 
 
 def line(name: str, facts: Iterable[str]) -> str:
-    """Return `name(fact, fact, ...)`: as many of the facts, the first first, as a line has room for."""
+    """Line `name(fact, fact, ...)` with as many of the first facts as it has room for."""
     kept = list(facts)
     whole = f"{name}({', '.join(kept)})"
     while len(whole) > LONGEST and len(kept) > 1:
@@ -45,7 +45,7 @@ def _is_default(field: dataclasses.Field[object], value: object) -> bool:
         return isinstance(value, Sized) and not len(value)
     if value is None or value is field.default:
         return True
-    # also a NaN that is another object
+    # equal also for NaN objects that differ
     return isinstance(value, int | float | str | tuple) and repr(value) == repr(field.default)
 
 
@@ -54,7 +54,7 @@ def _cut(text: str, length: int) -> str:
 
 
 def brief(value: object) -> str:
-    """Return a value in words for a part of a line."""
+    """Value in words for a part of a line."""
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, np.ndarray):
@@ -73,7 +73,7 @@ def brief(value: object) -> str:
 
 
 class Shown:
-    """A result, which says its main facts on a line, in a notebook as a table, and plots itself."""
+    """Result with its main facts on a line, as a table in a notebook, and as a plot."""
 
     __slots__ = ()
 

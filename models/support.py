@@ -63,7 +63,7 @@ class Support(str):
         guided: bool = False,
         walls: bool = False,
     ) -> Self:
-        """Return the support of a name with its facts."""
+        """Support of a name with its facts."""
         support = super().__new__(cls, name)
         facts = words, place, model, own_model, compared_with, guided, walls
         for fact, value in zip(cls._FACTS, facts, strict=True):
@@ -74,12 +74,12 @@ class Support(str):
         raise AttributeError(f"a support does not change, got {value!r} for {name}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # text pickles by its characters alone, and runs travel to worker processes
+        # text is pickled without its attributes, and runs go to worker processes
         return partial(Support, **{fact: getattr(self, fact) for fact in self._FACTS}), (str(self),)
 
     @property
     def has_model(self) -> bool:
-        """Whether there is a reduced model of this support itself."""
+        """Whether a reduced model has exactly this support."""
         return bool(self.model)
 
     @property
@@ -131,7 +131,7 @@ RECESSES_FIRST = tuple(sorted(SUPPORTS.values(), key=lambda each: not each.is_re
 
 
 def support_named(name: str) -> Support:
-    """Return the support of a name.
+    """Support of a name.
 
     Raises
     ------

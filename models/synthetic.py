@@ -19,7 +19,7 @@ from .number_checks import (
 )
 from .record_source import PULSE, SYNTHETIC, source_of_samples
 
-# name: periods that it lasts; the rest is still ground
+# name: duration in periods, after which the ground is still
 _LENGTHS = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5}
 PULSES = tuple(_LENGTHS)
 # between samples the motion is linear: off by (2 pi/400)^2/8 = 3e-5 of the amplitude at most
@@ -70,7 +70,7 @@ def pulse(
         raise ValueError(f"start must leave at most {MOST_STILL:g} samples of still ground, got {start!r} s")
     count = round(SAMPLES_PER_PERIOD * _LENGTHS[kind])
     step = period / SAMPLES_PER_PERIOD
-    # the pulse begins at a sample, so that its beginning stays sharp
+    # begins at a sample, so that its first slope is exact
     still = round(start / step)
     phase = 2.0 * math.pi * np.arange(count + 1) / SAMPLES_PER_PERIOD
     shape = np.cos(phase) if kind == "one-cosine" else np.sin(phase)
@@ -83,7 +83,7 @@ def pulse(
 
 # Kanai-Tajimi filter, firm soil: K. Kanai 1957, H. Tajimi 1960
 _GROUND_FREQUENCY, _GROUND_DAMPING = 5.0 * math.pi, 0.6
-# a second, high-pass filter (R. W. Clough, J. Penzien) takes what a ground cannot do: drift away
+# a second, high-pass filter (R. W. Clough, J. Penzien) removes the drift that no ground has
 _CORNER_FREQUENCY, _CORNER_DAMPING = 0.5 * math.pi, 0.6
 _TIME_STEP = 0.01
 # shares of the duration: rise and strong part of the envelope, followed by an exponential decay

@@ -79,7 +79,7 @@ class Tendon(CompactRepr):
         area: float | None = None,
         gravity: float = 9.81,
     ) -> Tendon:
-        """Make a tendon from what a drawing gives.
+        """Tendon from the data of a drawing.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class Tendon(CompactRepr):
         return self.prestress + self.stiffness * self.gaps(body) * 2.0 * math.sin(0.5 * tilt)
 
     def tilt_at(self, body: RockingBody, tension: float) -> float:
-        """Return the tilt at which the tension is so many weights of one column [rad]; inf: not below 90 deg.
+        """Tilt at a tension in weights of one column [rad]; inf if not below 90 deg.
 
         Examples
         --------
@@ -158,5 +158,5 @@ class Tendon(CompactRepr):
         return 2.0 * math.asin((tension - self.prestress) / (2.0 * self.stiffness * self.gaps(body)))
 
     def yield_tilt(self, body: RockingBody) -> float:
-        """Return the tilt at which it yields [rad]; inf where it does not below 90 deg."""
+        """Tilt at which the tendon yields [rad]; inf if not below 90 deg."""
         return math.inf if self.yield_force is None else self.tilt_at(body, self.yield_force)

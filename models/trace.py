@@ -1,4 +1,4 @@
-"""The motion of one cylinder, or of one column of a frame, whoever computed or measured it."""
+"""Motion of one cylinder, or of one column of a frame, computed or measured."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 # slip, and displacement with a closed base, over b: more than the creep of an engine's contact
 _SLIP, _CREEP = 0.01, 1e-3
-NO_PEAK = ("failed", "undecided")  # outcomes of runs of which nobody knows whether they stand
+NO_PEAK = ("failed", "undecided")  # outcomes of runs that neither stand nor overturn for certain
 
 
 class LazySample:
-    """A sampled quantity that the source computes when it is first asked for."""
+    """Sampled quantity that its source computes on first use."""
 
     def __init__(self, width: int) -> None:
         self._width = width
@@ -55,7 +55,7 @@ T = TypeVar("T")
 
 
 class Deferred(Generic[T]):
-    """A field given as its value, or as a function that computes it when it is first asked for.
+    """Field given as a value, or as a function that computes it on first use.
 
     A NaN is computed from the trace `otherwise`.
     """
@@ -71,7 +71,7 @@ class Deferred(Generic[T]):
 
     def __get__(self, trace: Trace | None, owner: type) -> T:
         if trace is None:
-            if self._default is None:  # a field that has to be given
+            if self._default is None:  # a field without a default
                 raise AttributeError(self._name)
             return self._default  # type: ignore[no-any-return]
         value = trace.__dict__[self._name]
@@ -259,7 +259,7 @@ class Trace(Shown):
 
     @cached_property
     def mode(self) -> str:
-        """Mode of motion; of an engine as far as its contact gives: see `models.mode`."""
+        """Mode of motion; of an engine as far as its contact shows it: see `models.mode`."""
         tilt, body = self.peak_tilt, self.case.cylinder
         if math.isnan(tilt) or not len(self.time):
             return ""
@@ -343,7 +343,7 @@ class Trace(Shown):
 
     @property
     def peak_time(self) -> float:
-        """Time of the peak tilt, to the sample [s]; after the end if the peak is there."""
+        """Time of the peak tilt [s], to the sample; after the end if the peak is there."""
         later = self.peak_tilt > self.peak_within_run
         return self.followed_until if later else float(self.time[self.tilt.argmax()])
 
@@ -361,7 +361,7 @@ class Trace(Shown):
 
     @cached_property
     def assumptions(self) -> Assumptions | None:
-        """Whether contact and friction held, from extrema of the continuous motion; None if not known."""
+        """Whether contact and friction held, from extrema of the continuous motion; None if unknown."""
         return self.source.assumptions(math.inf)
 
     def assumptions_until(self, end: float) -> Assumptions | None:
@@ -377,7 +377,7 @@ class Trace(Shown):
         return self.facts + (self.assumptions.breaches if self.assumptions else ())
 
     def first(self, *codes: str) -> float:
-        """Return the earliest time at which a diagnostic of these codes holds [s]; infinite if none does.
+        """Earliest time at which a diagnostic of these codes holds [s]; infinite if there is none.
 
         Parameters
         ----------
@@ -426,7 +426,7 @@ class Trace(Shown):
         )
 
     def to_plain(self) -> dict[str, object]:
-        """Return all of it but its case and samples, for JSON."""
+        """Fields without case and samples, for JSON."""
         given = plain_json.fields_of(self)
         for name in ("case", "source", *trace_file.FIELDS):
             del given[name]
@@ -509,7 +509,7 @@ class Trace(Shown):
 
 
 def lost_trace(case: Case, run: Run, why: str) -> Trace:
-    """Return the trace of a run that left none, as where its process died: no samples, outcome "failed"."""
+    """Trace of a run without a result, such as one whose process died: no samples, outcome "failed"."""
     none = np.empty(0)
     return Trace(
         case=case,

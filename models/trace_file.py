@@ -1,4 +1,4 @@
-"""What a trace is made of, and its Parquet file: samples as the table, the rest in its metadata.
+"""Parts of a trace and its Parquet file: samples as the table, the rest in its metadata.
 
 The sampled quantities of a trace have a source, which has them at hand or computes them when they are first
 asked for. A trace comes back from its file with the same bits.
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
-# the name of our part of the metadata of a Parquet file, beside that of pandas
+# key of our part of the metadata of a Parquet file, besides that of pandas
 METADATA = b"rockwobble"
 # names of samples in a table, components of a vector together, their unit and meaning
 _SAMPLES = (
@@ -97,13 +97,13 @@ class Source(Protocol):
         ...
 
     def assumptions(self, until: float) -> Assumptions | None:
-        """Return whether contact and friction held until a time [s]; None if it does not know."""
+        """Whether contact and friction held until a time [s]; None if unknown."""
         ...
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class EagerSource(CompactRepr):
-    """A source that has everything at hand, such as an engine or a stored file."""
+    """Source whose quantities are already computed, such as an engine or a stored file."""
 
     values: Mapping[str, Array]
     held: Assumptions | None = None
@@ -113,7 +113,7 @@ class EagerSource(CompactRepr):
         return self.values
 
     def assumptions(self, until: float) -> Assumptions | None:
-        """Return the assumptions of the whole motion, as far as they are known."""
+        """Assumptions over the whole motion, as far as known."""
         return self.held
 
 
@@ -126,7 +126,7 @@ def no_passes() -> pd.DataFrame:
 
 
 def friction_of(force: Array) -> Array:
-    """Return horizontal over normal force (n,) of `force` (n, 3); inf where N is not positive."""
+    """Horizontal over normal force (n,) of `force` (n, 3); inf where N is not positive."""
     horizontal, normal = np.hypot(force[:, 0], force[:, 1]), force[:, 2]
     pressed = normal > 0.0
     needed = np.where(pressed, horizontal / np.where(pressed, normal, 1.0), math.inf)
@@ -134,12 +134,12 @@ def friction_of(force: Array) -> Array:
 
 
 def trace_arguments(facts: Facts, samples: pd.DataFrame) -> JsonObject:
-    """Return the arguments of a trace, but its case, of what `Trace.to_plain` and its samples hold."""
+    """Arguments of a trace, except its case, from `Trace.to_plain` and its samples."""
     import pandas as pd
 
     if "rest_intervals" not in facts:
         raise ValueError("a trace of 0.2 or older must be run again: it does not say where it rests")
-    # a file of another version lacks what it did not know
+    # a file of an older version lacks later fields
     found: dict[str, Array] = {name: samples[name].to_numpy() for name in samples.columns}
     for name, columns in VECTORS.items():
         if columns[0] in found:
@@ -169,7 +169,7 @@ def _diagnostics(given: Iterable[Facts]) -> tuple[Diagnostic, ...]:
 
 
 def motion_facts(motion: GroundMotion) -> JsonObject:
-    """Return the numbers that state a ground motion, without its samples; SI units."""
+    """Numbers of a ground motion, without its samples; SI units."""
     return {
         "name": motion.name,
         "time_step": motion.time_step,
@@ -180,12 +180,12 @@ def motion_facts(motion: GroundMotion) -> JsonObject:
 
 
 def case_facts(case: Case) -> JsonObject:
-    """Return the fields of a case, of its ground motion `motion_facts`; SI units and radians."""
+    """Fields of a case, with `motion_facts` of its ground motion; SI units and radians."""
     return fields_of(case) | {"motion": case.motion and motion_facts(case.motion)}
 
 
 def case_from_plain(given: Facts) -> Case:
-    """Return the case of its fields, as JSON gives them back."""
+    """Case from its fields, as read from JSON."""
     motion, initial = given["motion"], given["initial"]
     fields = {
         "cylinder": cylinder_of(given["cylinder"]),
@@ -197,7 +197,7 @@ def case_from_plain(given: Facts) -> Case:
 
 
 def pack(table: pd.DataFrame, about: Mapping[str, object]) -> bytes:
-    """Return a table as the bytes of a Parquet file with `about` in its metadata."""
+    """Table as the bytes of a Parquet file with `about` in its metadata."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -245,7 +245,7 @@ def to_parquet(samples: pd.DataFrame, facts: Mapping[str, object], case: Case) -
 
 
 def from_parquet(path: str | Path) -> tuple[JsonObject, pd.DataFrame, Case]:
-    """Return facts, samples and case of a file that `packed` made.
+    """Facts, samples and case of a file of `to_parquet`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Names of columns: what a column holds by its name and unit, in the languages of the networks.
+"""Quantity, component and unit of a column by its name, in the languages of the networks.
 
 Words stand in column_words.toml and are compared without case, accents, units and punctuation. A name that is
 in none of its lists is unknown, and an unknown column is never taken for a component.
@@ -32,8 +32,8 @@ _BRACKETS = re.compile(r"[\[({<]([^\[\](){}<>]*)[\])}>]")
 _QUADRANT = re.compile(r"\b[NS]\s?\d{1,2}\s?[EW]\b")
 _DEGREES = re.compile(r"(?<![\d.])(\d{3}|\d{1,3}(?:\.\d{1,3})?(?=\s?DEG))(?![\d.])")
 _STATEMENT = re.compile(r"=\s?(?:[-+.\d]|$)")  # "dt=0.005 s" names no column
-_BLANK = "\ue000"  # inside of a cell, where blanks part cells
-_NORTH_SOUTH = "ns"  # a direction, unless it stands in brackets or behind a time: then nanoseconds
+_BLANK = "\ue000"  # stands for a blank inside of a cell, where blanks separate cells
+_NORTH_SOUTH = "ns"  # a direction, except in brackets or after a time: then nanoseconds
 
 
 def plain(text: str) -> str:
@@ -62,7 +62,7 @@ def _meanings(table: str) -> Mapping[str, str]:
 
 @cache
 def pattern(name: str) -> re.Pattern[str]:
-    """A pattern of column_words.toml."""
+    """Compiled pattern of column_words.toml."""
     patterns = _tables()["patterns"]
     if name != "stated_step":
         return re.compile(patterns[name], re.IGNORECASE)
@@ -73,7 +73,7 @@ def pattern(name: str) -> re.Pattern[str]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColumnName:
-    """A column by its name.
+    """Quantity, component and unit in the name of a column.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ def column_name(text: str) -> ColumnName:
 
 
 def _unit_apart(text: str) -> tuple[str, str]:
-    """Words of a name, and its unit: in brackets, behind "in", an underscore or a blank."""
+    """Words of a name, and its unit: in brackets, or after "in", an underscore or a blank."""
     if len(text) > 1 and quantity_of_unit(text) and text.casefold() != _NORTH_SOUTH:
         return "", text
     units = [each.strip() for each in _BRACKETS.findall(text) if quantity_of_unit(each)]
@@ -181,7 +181,7 @@ def _by_words(words: str) -> ColumnName:
     tokens = re.findall(r"[^\W\d_]+|\d+", text)
     if not tokens:
         return ColumnName(kind="acceleration" if joined else "index")
-    # "i" and "k" are articles, "t" a transverse direction, where more stands there
+    # "i" and "k" are articles, and "t" a transverse direction, in a name of several words
     kinds = [None if at and token in ("i", "k", "no") else _kind(token) for at, token in enumerate(tokens)]
     for kind in ("velocity", "displacement", "other"):
         if kind in kinds and (kind == "other" or "acceleration" not in kinds):
@@ -205,7 +205,7 @@ def _kind(token: str) -> Kind | None:
 
 
 def _senses(tokens: Sequence[str]) -> set[str]:
-    """The positive senses that words name, "x+" for east: one where the name is clear."""
+    """Positive senses named by words, such as "x+" for east; exactly one in a clear name."""
     senses = _meanings("senses")
     words = [token for token in tokens if token not in _meanings("others")]
     whole = "".join(words)
@@ -232,7 +232,7 @@ def _azimuth(words: str) -> float | None:
 def names_of(
     header: Sequence[str], width: int, wanted: Sequence[str] = ()
 ) -> tuple[list[ColumnName] | None, list[str]]:
-    """The names of `width` columns by the line of a header that has them, and the other lines.
+    """Names of the `width` columns from the header line that has them, and the other lines.
 
     Parameters
     ----------
@@ -267,7 +267,8 @@ def names_of(
             known = sum(name.kind != "unknown" and name.text not in ("", name.unit) for name in names)
             forms = {comparison_key(form) for cell in cells for form in (cell, without_unit(cell))}
             known = width * (keys <= forms) if keys else known
-            # the lower of two lines that know as much; of the last, which mostly names them, a part is enough
+            # the lower of two lines with as many known names; the last line, which mostly has the names, may
+            # hold a part
             if known and (2 * known > width or separated) and (known, place) > best[:2]:
                 best = (known, place, names)
     if not best[0]:
@@ -278,7 +279,7 @@ def names_of(
 
 
 def comparison_key(name: str) -> str:
-    """A name as names are compared: without case, accents, blanks and punctuation."""
+    """Name for comparison: without case, accents, blanks and punctuation."""
     return re.sub(r"[\W_]+", "", plain(name))
 
 
@@ -288,7 +289,7 @@ def without_unit(name: str) -> str:
 
 
 def _splittings(line: str, width: int) -> list[list[str]]:
-    """The ways to cut a line, or what stands behind its colon, into `width` cells that state no numbers."""
+    """Divisions of a line, or of its part after a colon, into `width` cells without numbers."""
     brackets = r"\s{0,3}[\[(][^\[\]()]*[\])]"  # "time (sec)" is one cell
     joined = re.sub(brackets, lambda match: re.sub(r"\s", _BLANK, match[0]), line[:_LONGEST_LINE])
     texts = [text.strip(" ").rstrip(",;| \t") for text in (joined, joined.partition(":")[2])]
@@ -300,7 +301,7 @@ def _splittings(line: str, width: int) -> list[list[str]]:
 def refuse_header(
     file: RecordFile, lines: Sequence[str], comments: Sequence[str], *, accelerates: bool
 ) -> None:
-    """Refuse a header of numbers that are no accelerations, or not yet, and titles between rows.
+    """Refuse a header of numbers other than accelerations, or of raw counts, and titles between rows.
 
     Parameters
     ----------

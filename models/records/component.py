@@ -12,14 +12,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-#: Of a component: x east, y north, z up.
+#: Direction of a component: x east, y north, z up.
 Direction = Literal["x", "y", "z"]
 
 # what spreadsheets call "Unicode text"
 _UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
-# blanks that do not break, and the minus sign of typesetters
+# non-breaking blanks, and the typographic minus sign
 _TYPESET = str.maketrans({"\u00a0": " ", "\u2007": " ", "\u2009": " ", "\u202f": " ", "\u2212": "-"})
-# the largest of the networks are below 50 MB; what is larger is another file by mistake
+# the largest files of the networks are below 50 MB; a larger file is one by mistake
 LARGEST_FILE = 200_000_000  # [bytes]
 STEP_OPTION, COLUMNS_OPTION = "--record-step (time_step=)", "--record-columns (columns=)"
 _END_OF_FILE = b"\x1a"  # Ctrl-Z of DOS
@@ -61,7 +61,7 @@ class RecordFile:
 
     @property
     def text(self) -> tuple[str, ...]:
-        """Lines of a file that is text.
+        """Lines of a text file.
 
         Raises
         ------
@@ -76,7 +76,7 @@ class RecordFile:
 
     @cached_property
     def head(self) -> tuple[str, ...]:
-        """First lines in capitals, cut to 200 characters: what tells a format; empty for a binary file."""
+        """First lines in capitals, cut to 200 characters, which show the format; empty if binary."""
         return tuple(line[:200].upper() for line in (self.lines or ())[:_HEAD])
 
 
@@ -91,7 +91,7 @@ def open_record(path: Path) -> RecordFile:
     """
     try:
         content = bytes_of(path)
-    except (OSError, ValueError) as error:  # ValueError: also for a null byte in the name
+    except (OSError, ValueError) as error:  # ValueError: null byte in the name
         reason = getattr(error, "strerror", None) or error
         name = str(path)
         shown = name if name.isprintable() and len(name) <= _LONGEST_NAME else repr(name[-_LONGEST_NAME:])

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from .column_names import comparison_key
 from .component import COLUMNS_OPTION, Component, Direction
 
-NORTH = "north"  # rotate= : x to the east and y to the north, by the azimuths
+NORTH = "north"  # value of rotate: x to the east and y to the north, by the azimuths
 _LEAST_ANGLE = 30.0  # [deg] between two horizontal components that span the plane
 
 
 class DirectionError(ValueError):
-    """Refusal of a component of which its file states neither direction nor azimuth."""
+    """Error of a component whose file states neither direction nor azimuth."""
 
 
 def in_order(components: Sequence[Component], name: str) -> list[Component]:
@@ -63,7 +63,7 @@ def in_order(components: Sequence[Component], name: str) -> list[Component]:
 
 
 def as_named(components: Sequence[Component], names: Sequence[str], file: str) -> list[Component]:
-    """Components that the user names as x, y and z: by label, the last word of it, or number from 1.
+    """Components chosen by the user as x, y and z: by label, its last word, or number from 1.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def as_named(components: Sequence[Component], names: Sequence[str], file: str) -
 
 
 def at_the_surface(components: Sequence[Component]) -> tuple[list[Component], tuple[str, ...]]:
-    """Return the components of a station without those of its borehole, and a note where there were some.
+    """Components of a station without those of its borehole, and a note if there were some.
 
     A download of KiK-net holds both sensors; what stands on the ground is moved by the one at the surface.
     """
@@ -99,12 +99,12 @@ def at_the_surface(components: Sequence[Component]) -> tuple[list[Component], tu
 
 
 def _with_directions(components: Sequence[Component]) -> list[Component]:
-    """Return components with the directions that their azimuths make."""
+    """Components with the directions that follow from their azimuths."""
     open_ones = [part for part in components if part.direction is None and part.azimuth is not None]
     others = {part.direction for part in components}
     if len(open_ones) == 2 and not others & {"x", "y"}:
         one, two = open_ones
-        # how far from north and south; where both are alike, x is clockwise of y
+        # distance from north or south; of two alike, x is clockwise of y
         far = [abs(math.sin(math.radians(part.azimuth or 0.0))) for part in open_ones]
         first_is_x = far[0] > far[1]
         if abs(far[0] - far[1]) < 1e-6:
@@ -121,7 +121,7 @@ def _with_directions(components: Sequence[Component]) -> list[Component]:
 
 
 def for_place(components: Sequence[Component], axis: Direction, name: str) -> Component:
-    """Return the component of a file that was given for one direction.
+    """Component of a file that was given for one direction.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def for_place(components: Sequence[Component], axis: Direction, name: str) -> Co
 def turned_to_north(
     acceleration: NDArray[np.float64], azimuths: Sequence[float | None]
 ) -> NDArray[np.float64]:
-    """Return accelerations whose x is east and y north, from those at two azimuths.
+    """Accelerations with x east and y north, from those at two azimuths.
 
     Parameters
     ----------

@@ -21,13 +21,12 @@ from .formats import read_components
 from .reading import Reading
 from .units import settled_unit
 
-ZERO = "zero"  # stands for a file: planar motion
+ZERO = "zero"  # in place of a file: planar motion
 _G = METRES_PER_SECOND_SQUARED["g"]
-# over a whole record two components may drift apart by this part of a step, the rounding of printed times
+# largest drift between two components over a record, in steps: the rounding of printed times
 _DRIFT = 0.05
 _MOST_PARTS = 20  # samples per smallest step; a longer resampled record indicates a mistake in the time steps
-# components may differ in length by this part, and by more where what is left out is below this part of
-# the peak
+# share by which the lengths of components may differ, and share of the peak below which more may be cut
 _LEFT_OUT, _STILL = 0.01, 0.05
 
 
@@ -127,7 +126,7 @@ def record_of(
     _require_same_clock([first, *(part for part in components if part is not first)])
     units_used = ["" if each.path.name == ZERO else settled_unit(each, reading.units) for each in components]
     components, changes = _equally_long(components, reading.lengths)
-    with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
+    with np.errstate(over="ignore"):  # GroundMotion refuses infinite samples
         samples = np.column_stack(
             [
                 part.values * METRES_PER_SECOND_SQUARED.get(unit, 1.0)
@@ -137,7 +136,7 @@ def record_of(
     if name is None:
         one = y_path is None and isinstance(x_path, str | Path)
         name = Path(str(x_path)).stem if one else first.path.stem
-    motion = GroundMotion(samples, first.time_step, name)  # refuses what is not finite
+    motion = GroundMotion(samples, first.time_step, name)  # refuses samples that are not finite
     source = _source(motion, components, units_used, (*notes, *changes))
     if reading.remove_mean:
         means = ", ".join(f"{mean / _G:.3g}" for mean in samples.mean(axis=0))
@@ -194,7 +193,7 @@ def _source(
 
 
 def _read_each(x: str | Path, y: str | Path, z: str | Path | None, reading: Reading) -> list[Component]:
-    """Read the file of each component; one of zeros has the clock of the other."""
+    """Components of one file each; a component of zeros has the clock of the other."""
     if str(x) == str(y) == ZERO:
         raise ValueError("one horizontal component must be a file, got zero for both")
     axes: tuple[Direction, ...] = ("x", "y", "z")
@@ -211,17 +210,17 @@ def _read_each(x: str | Path, y: str | Path, z: str | Path | None, reading: Read
 
 
 def _read_all(path: Path, reading: Reading) -> tuple[list[Component], tuple[str, ...]]:
-    """Read the components of a file or a folder, and what of a folder was not read."""
+    """Components of a file or a folder, and the files of the folder that were not read."""
     try:
         is_folder = path.is_dir()
-    except (OSError, ValueError):  # a null byte in the name
+    except (OSError, ValueError):  # null byte in the name
         is_folder = False
     if not is_folder:
         return in_order(read_components(open_record(path), reading), path.name), ()
     return _read_folder(path, reading)
 
 
-_MOST_FILES = 60  # limit for the folder of a station; more are those of many stations
+_MOST_FILES = 60  # limit for the folder of a station; more files are those of many stations
 
 
 def _read_folder(folder: Path, reading: Reading) -> tuple[list[Component], tuple[str, ...]]:
@@ -237,7 +236,7 @@ def _read_folder(folder: Path, reading: Reading) -> tuple[list[Component], tuple
 def _read_station(
     paths: Sequence[Path], name: str, reading: Reading, *, others: bool = False
 ) -> tuple[list[Component], tuple[str, ...]]:
-    """Read the files of one station; `others`: some may be none of records, and are noted."""
+    """Components from the files of one station; `others` allows files that are no records."""
     components: list[Component] = []
     refusals: list[tuple[str, ValueError]] = []
     for path in paths:
@@ -278,7 +277,7 @@ def _require_same_clock(components: Sequence[Component]) -> None:
                 f"{first.path.name} and {other.time_step:g} s in {other.path.name}: resample (--resample) "
                 "takes both at a step that divides them, which changes neither"
             )
-        # an AT2 file gives no times: its first sample is taken as that of the others
+        # an AT2 file has no times: its first sample is at the time of the others' first
         if first.start is not None and other.start is not None and abs(other.start - first.start) > tolerance:
             raise ValueError(
                 f"the components of a record must start at one time, got {first.start:g} s in "
@@ -289,7 +288,7 @@ def _require_same_clock(components: Sequence[Component]) -> None:
 def _equally_long(
     components: Sequence[Component], lengths: str | None
 ) -> tuple[list[Component], tuple[str, ...]]:
-    """Components of one length, and what was done to them.
+    """Components of one length, and a note of the cut.
 
     Parameters
     ----------
@@ -351,7 +350,7 @@ def _resampled(components: Sequence[Component]) -> list[Component]:
 
 
 def _refine(component: Component, count: int, step: float) -> Component:
-    """Component with each of its time steps cut into `count` of `step` [s]."""
+    """Component with each of its time steps divided into `count` of `step` [s]."""
     values = component.values
     places = np.arange((len(values) - 1) * count + 1) / count
     return replace(component, values=np.interp(places, np.arange(len(values)), values), time_step=step)
@@ -386,7 +385,7 @@ def el_centro_1940(vertical: bool = False) -> GroundMotion:
     ((5346, 2), 0.28648)
     """
     with as_file(files("rockwobble.models") / "records") as folder:
-        # both horizontal components reach to the shortest of them, 5346 samples, with or without z
+        # both horizontal components are cut to the shortest, 5346 samples, with or without z
         return read_record(
             folder / _EAST_WEST,
             folder / _NORTH_SOUTH,

@@ -1,4 +1,4 @@
-"""Ground motions of a folder of records: with a table of its own, or as the database of PEER gives it out."""
+"""Ground motions of a folder of records: with a table records.csv, or as downloaded from PEER."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PEER_TABLE = "_SearchResults.csv"
 _COLUMNS = ("name", "record", "x", "y", "z", "scale", "level", "units")
 
 
-#: Cells by column; those under no column by None.
+#: Cells by column; surplus cells under None.
 Row = Mapping[str | None, str | list[str]]
 
 
@@ -85,7 +85,7 @@ def read_records(
     motions: list[GroundMotion] = []
     for number, row in rows:
         try:
-            _positive("level", row.get("level"))  # refused where it stands
+            _positive("level", row.get("level"))  # refused with its row
             motions.append(_motion(path.parent, row, reading))
         except ValueError as error:
             raise ValueError(f"{path.name}, line {number}: {error}") from None
@@ -151,7 +151,7 @@ def _text(path: Path) -> io.StringIO:
 
 
 def _table(path: Path) -> tuple[list[str], list[tuple[int, Row]]]:
-    """Return the columns of records.csv, and number and cells of each row."""
+    """Columns of records.csv, and number and cells of each row."""
     text = _text(path)
     first = text.readline()
     text.seek(0)
@@ -165,7 +165,7 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, Row]]]:
 
 
 def _motion(folder: Path, row: Row, reading: Reading) -> GroundMotion:
-    beyond = list(row.get(None, ()))  # cells under no column
+    beyond = list(row.get(None, ()))  # surplus cells, beyond the last column
     if any(cell.strip() for cell in beyond):
         raise ValueError(f"must have {len(row) - 1} cells, got {len(row) - 1 + len(beyond)}")
     cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
@@ -203,7 +203,7 @@ _RSN = re.compile(r"RSN(\d{1,6})_.*\.AT2", re.IGNORECASE)
 
 
 def _stations(folder: Path) -> tuple[list[tuple[str, list[Path]]], bool]:
-    """Return name and AT2 files of each record of a folder of PEER, and whether its table lists them."""
+    """Name and AT2 files of each record of a PEER folder, and whether its table lists them."""
     paths = sorted(folder.iterdir())
     tables = [path for path in paths if path.name.endswith(PEER_TABLE)]
     if tables:
@@ -216,7 +216,7 @@ def _stations(folder: Path) -> tuple[list[tuple[str, list[Path]]], bool]:
 
 
 def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
-    # a blank before a quoted name is none of it
+    # a blank before a quoted name does not belong to it
     rows = [[cell.strip() for cell in row] for row in csv.reader(_text(table), skipinitialspace=True)]
     head = next((at for at, row in enumerate(rows) if any("filename" in cell.lower() for cell in row)), 0)
 
@@ -236,7 +236,7 @@ def _listed_stations(table: Path) -> list[tuple[str, list[Path]]]:
     for cells in rows[head + 1 :]:
         if len(cells) <= max(places):
             if entries:
-                break  # another table follows
+                break  # end of this table, before the next
             continue
         names = [cells[at].replace("\\", "/").rpartition("/")[2] for at in places]
         files = [
@@ -272,7 +272,7 @@ def _of_station(paths: Sequence[Path], name: str, reading: Reading, *, listed: b
     except DirectionError:
         if not listed:
             raise
-    # titles such as L and T: the table still tells horizontal from vertical
+    # titles such as L and T: the table distinguishes horizontal from vertical
     motion = record_of(paths[0], paths[1], paths[2] if paths[2:] else None, reading, name)
     order = "x is horizontal 1 and y horizontal 2 of the table, their azimuths are not stated"
     return motion.with_samples(motion.acceleration, order)

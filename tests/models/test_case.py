@@ -24,7 +24,7 @@ SHORT = GroundMotion(np.zeros((11, 2)), 0.1)
 LONG = GroundMotion(np.zeros((21, 2)), 0.1)
 
 
-def test_a_case_lasts_as_long_as_its_motion_unless_told_otherwise() -> None:
+def test_a_case_lasts_as_long_as_its_motion_by_default() -> None:
     case = Case(PIER, SHORT, friction=0, name="a")
     assert (case.length, case.gravity, case.friction) == (1.0, 9.81, 0.0)
     assert Case(PIER, SHORT, duration=5.0, name="a").length == 5.0
@@ -34,7 +34,7 @@ def test_a_case_lasts_as_long_as_its_motion_unless_told_otherwise() -> None:
         Case(PIER, initial=InitialState(tilt=0.1), name="a")
 
 
-def test_a_start_is_between_standing_and_lying_and_has_rates_only_where_it_is_tilted() -> None:
+def test_a_start_is_between_upright_and_lying_and_has_rates_only_tilted() -> None:
     for tilt in (0.0, 1e-300, 1.5707):
         state = InitialState(tilt=tilt, rolling_angle=-20.0)
         assert (state.tilt, state.tilt_rate, state.rolling_rate) == (tilt, 0.0, 0.0)
@@ -46,7 +46,7 @@ def test_a_start_is_between_standing_and_lying_and_has_rates_only_where_it_is_ti
             InitialState(tilt=0.0, **{rate: 1e-3})
 
 
-def test_a_run_keeps_its_settings_and_nobody_changes_them() -> None:
+def test_the_settings_of_a_run_are_immutable() -> None:
     given = {"cone": "elliptic"}
     run = Run("mujoco", "recess", 1e-4, **given)
     given["cone"] = "pyramidal"
@@ -67,7 +67,7 @@ def test_a_run_keeps_its_settings_and_nobody_changes_them() -> None:
         (Run("shaking table", "external"), False, False, "shaking table"),
     ],
 )
-def test_a_run_knows_what_it_is(run: Run, is_model: bool, is_planar: bool, engine_name: str) -> None:
+def test_a_run_states_its_kind(run: Run, is_model: bool, is_planar: bool, engine_name: str) -> None:
     known = (run.is_model, run.is_planar, run.engine_name, run.time_step)
     assert known == (is_model, is_planar, engine_name, None)
 
@@ -89,7 +89,7 @@ def test_a_run_names_the_models_that_it_is_compared_with(
     assert run.compared_with == tuple(Run(None, each) for each in compared_with)
 
 
-def test_a_run_travels_to_another_process_with_its_support() -> None:
+def test_a_pickled_run_keeps_its_support() -> None:
     run = Run("mujoco", "ring", 1e-4, cone="elliptic")
     again = pickle.loads(pickle.dumps(run))
     assert again == run != Run("mujoco", "recess", 1e-4)
@@ -118,13 +118,13 @@ def test_a_suite_takes_any_iterable_once_of_cases_of_different_names() -> None:
         ({"initial": 0.1}, "initial must be InitialState or None, got 0.1"),
     ],
 )
-def test_a_part_of_another_kind_is_refused_by_name(given: Any, words: str) -> None:
+def test_a_part_of_a_wrong_type_is_refused_by_name(given: Any, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         Case(**{"cylinder": PIER, "motion": SHORT, **given})
 
 
 def test_friction_at_rest_is_the_slenderness_that_would_just_uplift():
-    """A base of b/h = mu uplifts under a_xy = mu (g + a_z), at which a friction of mu gives way."""
+    """A base of b/h = mu uplifts under a_xy = mu (g + a_z), at which a friction of mu is exceeded."""
     samples = np.random.default_rng(3).normal(scale=0.5, size=(40, 3))
     motion = GroundMotion(samples, 0.01)
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), motion)

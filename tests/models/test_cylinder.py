@@ -48,7 +48,7 @@ def test_a_general_body_keeps_its_outline_apart_from_its_mass_centre() -> None:
     assert (deck_on_pier.transverse_inertia, deck_on_pier.axial_inertia) == (12.0, 2.0)
 
 
-def test_a_value_is_frozen_hashable_and_travels() -> None:
+def test_a_cylinder_is_frozen_hashable_and_pickled() -> None:
     cylinder = Cylinder(semidiagonal=6, tan_alpha=0.2)
     assert isinstance(cylinder.semidiagonal, float)
     with pytest.raises(dataclasses.FrozenInstanceError):
@@ -58,7 +58,7 @@ def test_a_value_is_frozen_hashable_and_travels() -> None:
 
 
 def test_refuses_inertias_that_no_distribution_of_mass_has() -> None:
-    """One that is given is compared with the default of the other: I1 = (27 + 64)/12 = 7.58, I2 = 4.5."""
+    """A given inertia is compared with the default of the other: I1 = (27 + 64)/12 = 7.58, I2 = 4.5."""
     for transverse, axial in ((1.0, 2.0), (None, 15.1), (2.3, None)):
         Cylinder(semidiagonal=5.0, tan_alpha=0.75, transverse_inertia=transverse, axial_inertia=axial)
     for transverse, axial, words in (

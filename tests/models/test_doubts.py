@@ -33,12 +33,12 @@ GRAVITIES = {"ft/s2": 0.3048, "in/s2": 0.0254, "cm/s2": 1e-2, "mm/s2": 1e-3}
 
 
 def likely(number: float, units: dict[str, float], usual: float) -> str:
-    """Return the unit in which a number is nearest to a usual one, by their ratio."""
+    """Unit in which a number is nearest to a usual one, by their ratio."""
     return min(units, key=lambda unit: max(number * units[unit] / usual, usual / (number * units[unit])))
 
 
 def test_a_doubtful_length_is_stated_with_its_limit() -> None:
-    """Of any body: the height of its outline first, then its diameter; 1 mm to 300 m are usual."""
+    """Any body: the height of its outline first, then its diameter; 1 mm to 300 m are usual."""
     chance = np.random.default_rng(2)
     seen = set()
     for height, slenderness, centre in zip(
@@ -71,7 +71,7 @@ def test_the_doubt_about_a_gravity_states_it_and_its_limit() -> None:
 
 
 @pytest.mark.parametrize(("one", "other", "columns"), [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)])
-def test_equal_components_are_named(one: int, other: int, columns: int) -> None:
+def test_equal_components_of_a_record_are_doubted(one: int, other: int, columns: int) -> None:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     samples = np.random.default_rng(4).uniform(-1.0, 1.0, (60, columns))
     samples[:, other] = samples[:, one]
@@ -80,7 +80,7 @@ def test_equal_components_are_named(one: int, other: int, columns: int) -> None:
     ]
     samples[37, other] += 1e-9
     assert codes(pier, motion=GroundMotion(samples, 0.1)) == []
-    samples[:, [one, other]] = 0.0  # as of a motion along the third
+    samples[:, [one, other]] = 0.0  # motion along the third direction
     assert codes(pier, motion=GroundMotion(samples, 0.1)) == []
 
 
@@ -97,12 +97,12 @@ def test_measured_records_are_plausible() -> None:
     planar = times(1.0, 0.0)
     for motion in (RECORD, el_centro_1940(vertical=True), strong, planar, times(1.0, 0.03)):
         assert doubts(motion) == ()
-    # turned by a degree, or by rounding, a planar motion stays one
+    # a planar motion stays planar after a rotation by a degree or by rounding
     for angle in (0.01, 0.5 * np.pi):
         assert doubts(planar.rotated(angle)) == ()
 
 
-def test_doubts_of_one_record_are_said_once() -> None:
+def test_doubts_about_one_record_appear_once() -> None:
     found = doubts_about(motions=[times(981.0, 981.0), None, times(2000.0, 2000.0), RECORD])
     assert [(doubt["record"], doubt["code"]) for doubt in found] == [("made", "large_peak")]
 
@@ -120,7 +120,7 @@ def test_degrees_beyond_a_full_turn_are_the_same_rotation(degrees: float, tmp_pa
 def record(
     folder: Path, x: np.ndarray, y: np.ndarray, step: float = 0.01, unit: str = "m/s2"
 ) -> GroundMotion:
-    """Return a record that was read from columns [`unit`]."""
+    """Record as read from columns [`unit`]."""
     path = folder / "record.csv"
     rows = zip((step * np.arange(len(x))).tolist(), x.tolist(), y.tolist(), strict=True)
     path.write_text(
@@ -131,7 +131,7 @@ def record(
 
 COUNT = 400
 TIMES = np.linspace(0.0, 1.0, COUNT)
-# strong in the middle and still at both ends, without a mean, and of a peak of 1
+# strong in the middle and still at both ends, without a mean, and with a peak of 1
 STILL = np.sin(np.pi * np.clip((TIMES - 0.1) / 0.8, 0.0, 1.0)) ** 2
 X, Y = STILL * np.sin(61.0 * TIMES), STILL * np.sin(47.0 * (1.0 - TIMES))
 X, Y = (each - STILL * each.sum() / STILL.sum() for each in (X, Y))
@@ -139,7 +139,7 @@ X, Y = X / np.abs(X).max(), Y / np.abs(Y).max()
 
 
 def found(motion: GroundMotion) -> dict[str, tuple[float, float, str]]:
-    """Return size, bound and detail of each doubt by its code."""
+    """Size, bound and detail of each doubt by its code."""
     facts = motion.diagnostics
     assert len({fact.code for fact in facts}) == len(facts)
     return {fact.code: (fact.size, fact.bound, fact.detail) for fact in facts}
@@ -148,8 +148,8 @@ def found(motion: GroundMotion) -> dict[str, tuple[float, float, str]]:
 @pytest.mark.parametrize("axis", ["x", "y"])
 @pytest.mark.parametrize("part", [-0.0505, 0.0495])
 def test_an_offset_above_a_twentieth_of_the_peak_is_doubted(tmp_path: Path, axis: str, part: float) -> None:
-    """The mean over the peak, of the component where it is largest."""
-    # an offset moves the peak, too: part = offset/(largest + offset) of the larger side
+    """Size of the doubt: mean over the peak, of the component where it is largest."""
+    # an offset changes the peak, too: part = offset/(largest + offset) of the larger side
     offset = part / (1.0 - abs(part))
     components = {"x": 0.8 * X, "y": 0.8 * Y}
     moved = components[axis]
@@ -166,7 +166,7 @@ def test_an_offset_above_a_twentieth_of_the_peak_is_doubted(tmp_path: Path, axis
 
 @pytest.mark.parametrize("axis", ["x", "y"])
 @pytest.mark.parametrize(("mean", "doubted"), [(0.79, False), (0.81, True), (-1.19, True), (1.21, False)])
-def test_a_mean_of_about_1_g_is_that_of_gravity(
+def test_a_mean_of_about_1_g_is_doubted_as_gravity(
     tmp_path: Path, axis: str, mean: float, doubted: bool
 ) -> None:
     components = {"x": 0.5 * G * X, "y": 0.5 * G * Y}
@@ -187,14 +187,14 @@ def test_peaks_of_components_that_differ_by_a_factor_of_30_are_doubted(
     assert facts == (
         {} if ratio < 30.0 else {"unlike_components": (pytest.approx(ratio, rel=1e-9), 30.0, axis)}
     )
-    # in proportion they are one motion along a line, whatever its direction
+    # components in proportion are one motion along a line, in any direction
     assert found(record(tmp_path, X, X / ratio)) == {}
 
 
 @pytest.mark.parametrize("unit", ["g", "m/s2", "cm/s2"])
 @pytest.mark.parametrize("peak", [1.99, 2.01, 39.5])
 def test_a_peak_above_2_g_is_doubted_with_a_plausible_unit(tmp_path: Path, unit: str, peak: float) -> None:
-    """The unit in which the peak is nearest to 0.4 g; none where the unit is already the smallest."""
+    """Advice: the unit in which the peak is nearest to 0.4 g; none where the unit is already the smallest."""
     metre = {"g": G, "m/s2": 1.0, "cm/s2": 0.01}
     resultant = np.hypot(X, Y).max()
     size = peak * G / metre[unit] / resultant
@@ -218,10 +218,10 @@ def test_a_time_step_that_no_recorder_has_is_doubted(tmp_path: Path, step: float
 @pytest.mark.parametrize("part", [0.29, 0.31])
 @pytest.mark.parametrize("sample", [-9, -8, -1])
 def test_strong_motion_in_the_last_fiftieth_is_doubted(tmp_path: Path, part: float, sample: int) -> None:
-    """Of what is left of the means."""
+    """Strong motion after the means are removed."""
     x = 0.8 * X
     x[sample] = 0.8 * part
-    x[0] = -0.8 * part  # so that the mean stays 0
+    x[0] = -0.8 * part  # so that the mean is 0
     facts = found(record(tmp_path, x, 0.8 * Y))
     doubted = part > 0.3 and sample >= -8  # 8 of 400 samples
     assert facts == ({"ends_in_strong_motion": (pytest.approx(part, rel=1e-9), 0.3, "")} if doubted else {})

@@ -9,7 +9,7 @@ HALF_A_DIGIT = 0.5e-5  # [g] the published peaks have five decimals
 
 
 def test_peaks_their_times_and_signs_are_those_of_the_files() -> None:
-    """As records/README.md states them; the first sample of each file, and the last of the shortest."""
+    """Published in records/README.md; the first sample of each file, and the last of the shortest."""
     flat, full = el_centro_1940(), el_centro_1940(vertical=True)
     assert (flat.acceleration.shape, full.acceleration.shape) == ((5346, 2), (5346, 3))
     assert np.array_equal(flat.acceleration, full.acceleration[:, :2])

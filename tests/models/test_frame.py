@@ -1,4 +1,4 @@
-"""The wobbling frame as a value: it stands where a cylinder stands."""
+"""The wobbling frame as a value, in place of a cylinder."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_a_frame_has_the_dimensions_of_its_columns() -> None:
     assert (frame.axial_inertia, frame.transverse_inertia) == (1.1, None)
 
 
-def test_a_frame_is_a_value() -> None:
+def test_a_frame_is_frozen_hashable_and_pickled() -> None:
     frame = WobblingFrame(PIER, 2.0)
     assert frame == WobblingFrame(PIER, slab_mass_ratio=2, columns=3) != WobblingFrame(PIER, 2.0, 4)
     assert PIER != WobblingFrame(PIER, 0.0) != PIER
@@ -37,7 +37,7 @@ def test_a_frame_is_a_value() -> None:
         frame.columns = 5  # type: ignore[misc]
 
 
-def test_its_repr_makes_it_again() -> None:
+def test_the_repr_of_a_frame_evaluates_to_it() -> None:
     frame = WobblingFrame(PIER, 0.25, 5)
     assert eval(repr(frame)) == frame
     assert "slab_mass_ratio=0.25" in repr(Case(frame, duration=1.0))
@@ -81,7 +81,7 @@ def test_a_suite_file_holds_frames(tmp_path: Any) -> None:
         read_suite(path)
 
 
-def test_a_frame_and_a_cylinder_are_bodies_beside_each_other() -> None:
+def test_frames_and_cylinders_share_an_interface_but_not_a_class() -> None:
     frame = WobblingFrame(PIER, 0.0)
     assert not isinstance(frame, Cylinder)
     assert (PIER.slab_mass_ratio, PIER.columns) == (0.0, 1)

@@ -25,7 +25,7 @@ def test_duration_spans_the_samples_and_peak_is_the_horizontal_resultant() -> No
 @pytest.mark.parametrize(
     "send", [lambda motion: motion, copy.deepcopy, lambda motion: pickle.loads(pickle.dumps(motion))]
 )
-def test_samples_are_a_copy_of_floats_that_nobody_can_change(send: Any) -> None:
+def test_samples_are_a_read_only_copy_of_floats(send: Any) -> None:
     samples = np.asfortranarray(SAMPLES.astype(np.int32))
     motion = send(GroundMotion(samples, np.float32(0.5), "pulse"))
     samples[1] = 0
@@ -62,7 +62,7 @@ def test_refuses_a_shape_that_is_no_motion(bad: Any) -> None:
 
 
 @pytest.mark.parametrize("value", [math.nan, -math.inf])
-def test_names_the_first_sample_that_is_not_finite(value: float) -> None:
+def test_the_first_sample_that_is_not_finite_is_named(value: float) -> None:
     samples = np.zeros((5, 3))
     samples[3, 2] = samples[4, 0] = value
     with pytest.raises(ValueError, match=f"must be finite, got {value} in sample 3 of component z$"):

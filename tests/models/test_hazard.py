@@ -1,4 +1,4 @@
-"""Hazard curves: what is refused, and that one curve in any form of a file is the same curve."""
+"""Hazard curves: refusals, and one curve in every form of a file."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_one_curve_in_any_form_is_the_same_curve(tmp_path: Path) -> None:
 ROWS = "\n" + "".join(f"{x},{y}\n" for x, y in zip(X, RATE, strict=True))
 
 
-def test_what_a_header_does_not_say_is_asked_for(tmp_path: Path) -> None:
+def test_facts_missing_from_a_header_are_asked_for(tmp_path: Path) -> None:
     gal, rate = X[0] / UNITS["pga"]["Gal"], -math.log1p(-RATE[0]) / 50.0
     for header, option, value, first in (
         ("PGA,AFE", "units", "Gal", (gal, RATE[0])),
@@ -151,7 +151,7 @@ def test_a_table_that_could_be_read_wrongly_is_refused(tmp_path: Path) -> None:
         assert "array" not in str(refusal.value)
 
 
-def test_rows_that_are_no_curve_are_refused(tmp_path: Path) -> None:
+def test_rows_that_are_no_hazard_curve_are_refused(tmp_path: Path) -> None:
     for rows, words in (
         ("g,1/yr\n0.1,0.1\n", "two numbers"),
         ("0.1,0.2,0.3\n", "two columns"),
@@ -177,7 +177,7 @@ def test_a_comma_that_may_part_thousands_is_refused(tmp_path: Path) -> None:
         read(tmp_path, "PGA (g);TR\n0,1;1.000\n0,2;2.475\n")
 
 
-def test_a_curve_is_its_highest_levels_or_refused_in_a_line(tmp_path: Path) -> None:
+def test_a_curve_drops_its_plateaus_or_is_refused_in_a_line(tmp_path: Path) -> None:
     """Levels of probability 1 before it and 0 behind it are left out, and of a plateau all but the last."""
     chance = np.random.default_rng(58)
     read_so_far = 0
@@ -241,7 +241,7 @@ def test_files_of_openquake_are_in_the_units_of_its_convention(
         read(tmp_path, text, measure="sa", period=0.3)
 
 
-def test_a_site_of_several_is_chosen(tmp_path: Path) -> None:
+def test_one_of_several_sites_is_chosen(tmp_path: Path) -> None:
     text = openquake("PGA", sites=3, years=1.0)
     with pytest.raises(ValueError, match="3 sites, from 1 to 3: choose one"):
         read(tmp_path, text)
@@ -253,7 +253,7 @@ def test_a_site_of_several_is_chosen(tmp_path: Path) -> None:
             read(tmp_path, text, site=beyond)
 
 
-def test_a_file_of_openquake_that_is_something_else_is_refused(tmp_path: Path) -> None:
+def test_a_file_of_openquake_without_a_hazard_curve_is_refused(tmp_path: Path) -> None:
     pga = openquake("PGA")
     for text, options, words in (
         (pga, {"measure": "pgv"}, "is of 'PGA', not of PGV"),

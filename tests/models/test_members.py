@@ -1,4 +1,4 @@
-"""Copies of a case: what is off by how much, and nothing else."""
+"""Copies of a case: the perturbed inputs and their size, with the others unchanged."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STARTS = {
 
 
 def changed(case: Case, copy: Case) -> dict[str, Any]:
-    """Return the factors of all numbers of a start and of a motion, and of gravity, that differ."""
+    """Factors of all numbers of a start, of a motion and of gravity that differ."""
     factors: dict[str, Any] = {}
     if case.initial is not None and copy.initial is not None:
         for name, value in dataclasses.asdict(case.initial).items():
@@ -55,7 +55,7 @@ def test_each_input_is_perturbed_independently_by_one_seed(start: str) -> None:
 
 @pytest.mark.parametrize("start", STARTS)
 @pytest.mark.parametrize("relative", [-0.02, 0.0, 0.03])
-def test_strength_is_that_of_the_motion_or_the_tilt_of_a_release(start: str, relative: float) -> None:
+def test_strength_scales_the_motion_or_the_tilt_of_a_release(start: str, relative: float) -> None:
     case = Case(PIER, **STARTS[start])
     names = ("tilt",) if start == "release" else ("x", "y", "z")
     due = dict.fromkeys(names if relative else (), pytest.approx(1.0 + relative, rel=1e-12))

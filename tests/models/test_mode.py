@@ -27,14 +27,14 @@ ALONG = GroundMotion(np.array([[0, 0], [3, 4], [-3, -4], [0, 0]]), 0.5)
         (0.0, 1e-3, AROUND, "slides", "rest"),
     ],
 )
-def test_smaller_of_friction_and_slenderness_decides(
+def test_the_smaller_of_friction_and_slenderness_decides_the_mode(
     friction: float, scale: float, motion: GroundMotion, flat: str, recess: str
 ) -> None:
     case = Case(CASK, motion.scaled(scale), friction=friction)
     assert (expected_mode(case, "flat"), expected_mode(case, "recess")) == (flat, recess)
 
 
-def test_release_rocks_and_upward_acceleration_holds_down() -> None:
+def test_a_release_rocks_and_upward_acceleration_prevents_uplift() -> None:
     tilted = InitialState(0.1, rolling_angle=np.arctan2(4, 3))
     assert expected_mode(Case(CASK, ALONG, initial=tilted, friction=0.1), "flat") == "rocks in one plane"
     assert expected_mode(Case(CASK, AROUND, initial=tilted, friction=0.1), "flat") == "rocks"

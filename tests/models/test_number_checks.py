@@ -1,4 +1,4 @@
-"""Bounds of numbers: what is refused is what the message says, for any bounds and any number."""
+"""Bounds of numbers: refusals and their messages, for any bounds and any number."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rockwobble.models.number_checks import (
     require_sample_step,
 )
 
-# end of a range: words of the message, and whether a number is on its right side
+# end of a range: words of the message, and the test of a number
 LOW = {
     "": ("", lambda value, end: True),
     "least": ("at least", lambda value, end: value >= end),
@@ -53,7 +53,7 @@ def test_a_number_beyond_its_bounds_is_refused_with_the_bounds(low: str, high: s
 
 
 @pytest.mark.parametrize("value", [-1.0, -5e-324, 0.0, 5e-324, 1e9])
-def test_zero_parts_what_is_positive_from_what_is_negative(value: float) -> None:
+def test_a_positive_number_excludes_zero_and_a_nonnegative_one_includes_it(value: float) -> None:
     assert require_finite("size", value, "m") == value
     for require, holds in ((require_positive, value > 0.0), (require_not_negative, value >= 0.0)):
         if holds:
@@ -63,15 +63,15 @@ def test_zero_parts_what_is_positive_from_what_is_negative(value: float) -> None
                 require("size", value, "m")
 
 
-def test_samples_of_a_trace_have_a_limit_that_is_stated() -> None:
-    """Ten million of them."""
+def test_the_number_of_samples_of_a_trace_is_limited() -> None:
+    """Limit: ten million samples."""
     assert require_sample_step(1.0001e-7, 1.0) == 1.0001e-7
     with pytest.raises(ValueError, match=r"at least 1e-07 s over 1 s \(10,000,000 samples"):
         require_sample_step(0.9999e-7, 1.0)
 
 
 @pytest.mark.parametrize("place", range(3))
-def test_numbers_that_must_rise_are_refused_wherever_they_do_not(place: int) -> None:
+def test_numbers_that_do_not_increase_are_refused(place: int) -> None:
     values = np.cumsum(np.random.default_rng(place).uniform(0.1, 1.0, 3))
     assert require_increasing("levels", values).tolist() == values.tolist()
     for wrong in (values[place - 1] if place else 0.0, -1.0, math.nan, math.inf):
@@ -80,8 +80,8 @@ def test_numbers_that_must_rise_are_refused_wherever_they_do_not(place: int) -> 
 
 
 @pytest.mark.parametrize("length", [2, 70, 71])
-def test_a_bad_value_is_quoted_where_a_line_has_room_for_it(length: int) -> None:
-    """Up to 70 characters; a longer text by its beginning, a list by its number of items."""
+def test_a_bad_value_is_quoted_up_to_a_line(length: int) -> None:
+    """Quote of up to 70 characters; a longer text by its beginning, a list by its number of items."""
     for value, longer in (
         ("a" * (length - 2), repr("a" * 32 + "...")),
         (["a" * (length - 4)] if length > 4 else [], "1 item"),

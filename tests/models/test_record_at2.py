@@ -24,7 +24,7 @@ def values_in_g(path: Path, **options: str) -> list[float]:
     return list(motion.acceleration[:, 0] / 9.81)
 
 
-def test_each_form_of_the_header_line(write: Write) -> None:
+def test_each_form_of_the_header_line_is_read(write: Write) -> None:
     for header in (
         *("NPTS=      6, DT=   .0100 SEC,", "NPTS=6,DT=.01", "npts: 6, dt: 1.0E-02 sec"),
         *("NPTS=  6, DT= 1.D-2 SEC", "     6    .0100    NPTS, DT(SEC)", "6, 0.01, NPTS, DT"),
@@ -44,7 +44,7 @@ def test_each_form_of_the_header_line(write: Write) -> None:
         ("Acceleration in gal", 0.01),
     ],
 )
-def test_the_unit_that_the_title_states(write: Write, line: str, factor: float) -> None:
+def test_the_unit_in_the_title_is_used(write: Write, line: str, factor: float) -> None:
     path = write(f"{TITLE}{line}\nNPTS= 6, DT= .01 SEC\n{SIX}")
     motion = read_record(path, path)
     assert motion.acceleration[:, 1] == pytest.approx(factor * IN_G, rel=1e-15)
@@ -58,7 +58,7 @@ def test_columns_of_fixed_width_may_touch(write: Write) -> None:
     assert values_in_g(path) == pytest.approx([-0.01, -0.02, 0.03, -0.04, 0.05, 0.006, 0.0017], rel=1e-15)
 
 
-def test_exponents_blanks_fills_and_letters_do_no_harm(write: Write, tmp_path: Path) -> None:
+def test_exponents_blanks_fills_and_letters_are_read(write: Write, tmp_path: Path) -> None:
     path = write(f"{TITLE}{UNITS}NPTS= 4, DT= 1.0D-02 SEC\n 0.1D-01 2.d-2 -3D-2 0.4D+0\n")
     assert values_in_g(path) == pytest.approx([0.01, 0.02, -0.03, 0.4], rel=1e-15)
     text = f"{TITLE}{UNITS}NPTS= 6, DT= .01 SEC   \n{SIX}\n   \n".replace("\n", "  \r\n")
@@ -70,7 +70,7 @@ def test_exponents_blanks_fills_and_letters_do_no_harm(write: Write, tmp_path: P
     assert values_in_g(path) == pytest.approx(IN_G)
 
 
-def test_words_may_end_it(write: Write) -> None:
+def test_words_at_the_end_are_ignored(write: Write) -> None:
     for end in ("*** End Data ***\n", "  *** end of data ***"):
         assert values_in_g(write(record() + end)) == values_in_g(write(record()))
     with pytest.raises(ValueError, match=r"line \d: expected accelerations"):
@@ -78,7 +78,7 @@ def test_words_may_end_it(write: Write) -> None:
 
 
 @pytest.mark.parametrize("turned", [1, 2])
-def test_a_rotated_component_looks_along_its_own_azimuth(write: Write, turned: int) -> None:
+def test_a_rotated_component_has_its_own_azimuth(write: Write, turned: int) -> None:
     sources = "".join(
         f"  H{at} for rotation: A 01/01/01, STATION, {90 * at:03d}\n" for at in range(1, turned + 1)
     )
@@ -90,7 +90,7 @@ def test_a_rotated_component_looks_along_its_own_azimuth(write: Write, turned: i
         assert (source.components[0].azimuth, source.time_step, source.samples) == (due, 0.02, 6)
 
 
-def test_a_silent_title_takes_the_unit_that_is_given(write: Write) -> None:
+def test_a_title_without_a_unit_takes_the_given_unit(write: Write) -> None:
     path = write(f"{TITLE}TIME SERIES\nNPTS= 6, DT= .01 SEC\n{SIX}")
     assert read_record(path, path, units="cm/s2").acceleration[5, 0] == pytest.approx(-0.0006, rel=1e-15)
     with pytest.raises(ValueError, match=r"^x.txt does not say its unit: give units, such as g, m/s2, cm"):
@@ -129,7 +129,7 @@ def record(header: str = "NPTS= 6, DT= .01 SEC", title: str = UNITS, values: str
         (record(title="ACCELERATION [m/s2], UNITS OF G\n"), r"x.txt states two units: m/s2 and G"),
     ],
 )
-def test_says_what_is_wrong_where_and_what_is_allowed(write: Write, text: str, message: str) -> None:
+def test_an_error_states_line_fault_and_allowed_values(write: Write, text: str, message: str) -> None:
     path = write(text)
     with pytest.raises(ValueError, match=f"^{message}") as caught:
         read_record(path, path)

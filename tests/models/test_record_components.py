@@ -1,4 +1,4 @@
-"""Two or three files that belong together."""
+"""Records from two or three files."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def test_each_file_has_its_own_place_format_and_unit(write: Write) -> None:
     assert motion.time_step == 0.01
 
 
-def test_named_for_the_first_file_unless_told_otherwise(write: Write) -> None:
+def test_a_record_is_named_after_its_first_file_by_default(write: Write) -> None:
     x = write(columns(0.01, 4), "east.csv")
     assert read_record(x, x).name == "east"
     assert read_record(str(x), str(x), name="Somewhere 1999").name == "Somewhere 1999"
 
 
-def test_steps_that_differ_by_the_rounding_of_printed_times_are_one_step(write: Write) -> None:
+def test_steps_that_differ_by_printed_rounding_are_equal(write: Write) -> None:
     x, y = (write(columns(1.0 / 60.0, count), name) for name, count in (("x", 500), ("y", 498)))
     assert read_record(x, y).acceleration.shape == (498, 2)
 
@@ -85,7 +85,7 @@ def component(direction: Direction | None, azimuth: float | None = None) -> Comp
 
 @pytest.mark.parametrize("azimuth", [0.0, 75.0, 90.0, 200.0, 359.0])
 @pytest.mark.parametrize(("stated", "left"), [("x", "y"), ("y", "x")])
-def test_a_component_of_an_azimuth_takes_the_direction_that_is_left(
+def test_a_component_takes_the_direction_left_by_the_others(
     stated: Direction, left: Direction, azimuth: float
 ) -> None:
     parts = [component("z"), component(None, azimuth), component(stated)]

@@ -28,7 +28,7 @@ COMPONENTS = {12: ("000", "090", "UP"), 6: ("180", "270", "-UP"), 1040: ("NS", "
 
 
 def samples(number: int, place: int) -> np.ndarray:
-    """Acceleration [g], another for each file."""
+    """Acceleration [g], different for each file."""
     decay = np.exp(-np.arange(COUNT) / 6.0)
     return np.round(0.01 * (1 + number % 7) * (place + 1) * decay * np.sin(np.arange(COUNT) + place), 9)
 
@@ -48,12 +48,12 @@ def name_of(number: int, ending: str) -> str:
 
 
 def download(folder: Path, without: Sequence[str] = (), cells: Mapping[str, str] | None = None) -> Path:
-    """Write a folder of PEER without the files of some names, and with other cells for some in its table."""
+    """Write a PEER folder without some files, and with changed cells in its table."""
     rows = []
     for place, (number, endings) in enumerate(COMPONENTS.items(), start=1):
         names = [name_of(number, ending) for ending in endings]
         for at, name in enumerate(names):
-            # velocities and displacements lie beside each
+            # files of velocities and displacements beside each
             for kind in ("VT2", "DT2"):
                 (folder / name.replace("AT2", kind)).write_text("VELOCITY TIME SERIES IN UNITS OF CM/S\n")
             if name not in without:
@@ -67,7 +67,7 @@ def download(folder: Path, without: Sequence[str] = (), cells: Mapping[str, str]
 
 
 def assert_components(motion: GroundMotion, number: int, count: int = 3) -> None:
-    """East is x and north y, and up is z, though the first horizontal component is that to the north."""
+    """East is x, north y and up z, although the first horizontal component is north."""
     endings = COMPONENTS[number]
     assert endings[0] in ("000", "NS", "180")
     signs = (1.0, 1.0, -1.0 if endings[2] == "DWN" else 1.0)
@@ -78,9 +78,9 @@ def assert_components(motion: GroundMotion, number: int, count: int = 3) -> None
 
 
 @pytest.mark.parametrize("table", [True, False], ids=["table", "names alone"])
-def test_a_download_is_read_as_it_comes(tmp_path: Path, table: bool) -> None:
+def test_a_download_from_peer_is_read_unchanged(tmp_path: Path, table: bool) -> None:
     path = download(tmp_path) / "_SearchResults.csv"
-    path.write_text(path.read_text().replace(',"', ', "'))  # a blank before a quoted name is none of it
+    path.write_text(path.read_text().replace(',"', ', "'))  # blanks before quotes
     if not table:
         path.unlink()
     motions = read_records(path if table else tmp_path)
@@ -111,13 +111,13 @@ def test_a_record_without_a_vertical_is_horizontal(tmp_path: Path, word: str) ->
 
 
 @pytest.mark.parametrize("missing", [name_of(6, "270"), name_of(6, "-UP")])
-def test_a_file_that_is_not_there_is_named_with_its_record(tmp_path: Path, missing: str) -> None:
+def test_a_missing_file_is_named_with_its_record(tmp_path: Path, missing: str) -> None:
     with pytest.raises(ValueError, match=r"RSN6.*" + missing) as caught:
         read_records(download(tmp_path, [missing]))
     assert str(caught.value).isprintable()
 
 
-def test_the_table_tells_horizontal_components_without_azimuth(
+def test_the_table_identifies_horizontal_components_without_azimuth(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(COMPONENTS, 6, ("L", "T", "VRT"))

@@ -1,4 +1,4 @@
-"""Damaged files: whatever stands in them, a reader answers with a motion or with one clear line."""
+"""Damaged files: a reader returns a motion or raises one clear line."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ IN_GAL = {"cm/s2": 1.0, "g": 980.665, None: 1.0}
 
 
 def any_motion(chance: np.random.Generator) -> Parts:
-    """Return values of three directions [gal] in two digits, whose peaks to both sides are not alike."""
+    """Random values in three directions [gal] with two digits and unequal peaks of both signs."""
     rise = np.minimum(1.0, 4.0 * np.arange(networks.COUNT) / networks.COUNT)
     parts = {}
     for axis in "xyz":
@@ -148,7 +148,7 @@ def test_corrected_smc_is_oriented_by_its_header(tmp_path: Path) -> None:
         assert_read(part, sign * PARTS["x"], "cm/s2", SMC_DIGITS * np.abs(PARTS["x"]).max())
 
 
-def test_an_azimuth_in_degrees_is_kept_and_stated(tmp_path: Path) -> None:
+def test_an_azimuth_in_degrees_is_stored_and_stated(tmp_path: Path) -> None:
     (part,) = components(tmp_path, "a.V2", networks.csmip(PARTS, {"x": "106 DEG"}, volume=2))
     assert (part.direction, part.azimuth) == (None, 106.0)
     (part,) = components(tmp_path, "a.V2c", networks.cosmos(PARTS, {"x": ("106 DEG", 106, "HN1")}))
@@ -161,7 +161,7 @@ def test_horizontal_sensors_without_azimuth_have_no_direction(tmp_path: Path) ->
     assert [part.direction for part in parts] == [None, "z", None]
 
 
-def test_down_is_turned_up_and_said(tmp_path: Path) -> None:
+def test_a_downward_sensor_is_turned_up_with_a_note(tmp_path: Path) -> None:
     for name, content in {
         "a.V2": networks.csmip(PARTS, {"z": "DOWN"}, volume=2),
         "a.V2A": networks.geonet(PARTS, {"z": "Down"}, corrected=True),
@@ -173,7 +173,7 @@ def test_down_is_turned_up_and_said(tmp_path: Path) -> None:
         assert_read(part, -PARTS["z"], "cm/s2")
 
 
-def test_channels_of_cosmos_by_codes_of_unit_and_stream(tmp_path: Path) -> None:
+def test_channels_of_cosmos_are_read_by_their_unit_and_stream_codes(tmp_path: Path) -> None:
     for unit, name, factor in (
         *(("g.     (02)", "g", 1.0), ("gal(10)", "cm/s2", 1.0), ("in/sec2(07)", "cm/s2", 2.54)),
         ("mg(11)", "g", 1e-3),
@@ -187,7 +187,7 @@ def test_channels_of_cosmos_by_codes_of_unit_and_stream(tmp_path: Path) -> None:
 
 
 class TestRefusals:
-    def test_counts(self, tmp_path: Path) -> None:
+    def test_counts_are_refused(self, tmp_path: Path) -> None:
         counts = networks.cosmos(PARTS, CHANNELS, unit="counts(50)", kind="raw accel.")
         assert "V1 or V2" in refusal(tmp_path, "a.V0c", counts)
 
@@ -207,22 +207,22 @@ class TestRefusals:
         parts = components(tmp_path, "s.bbp", networks.bbp(PARTS, []), units="cm/s2")
         assert [part.direction for part in parts] == ["y", "x", "z"]
 
-    def test_uneven_film(self, tmp_path: Path) -> None:
+    def test_unevenly_spaced_film_is_refused(self, tmp_path: Path) -> None:
         assert "2 CORRECTED" in refusal(tmp_path, "a.smc", networks.smc(PARTS["x"], title="1 UNCORRECTED"))
         content = networks.csmip(PARTS, DEGREES_AND_UP, volume=1).replace("ACCELEROGRAM POINTS", "")
         assert "CSMIP" in refusal(tmp_path, "a.V1", content)
 
-    def test_spectra(self, tmp_path: Path) -> None:
+    def test_spectra_are_refused(self, tmp_path: Path) -> None:
         content = "RESPONSE AND FOURIER AMPLITUDE SPECTRA\n" + networks.csmip(PARTS, DEGREES_AND_UP, volume=2)
         assert "spectra" in refusal(tmp_path, "a.V3", content)
 
-    def test_orientations_that_contradict_each_other(self, tmp_path: Path) -> None:
+    def test_orientations_that_contradict_each_other_are_refused(self, tmp_path: Path) -> None:
         vertical = networks.cosmos(PARTS, {"x": ("340 deg", 400, "HNE")})
         other = networks.cosmos(PARTS, {"x": ("340 deg", 90, "HNE")})
         assert "340 deg" in refusal(tmp_path, "a.V2c", vertical)
         assert "340 deg" in refusal(tmp_path, "a.V2c", other)
 
-    def test_others_are_refused_by_their_names(self, tmp_path: Path) -> None:
+    def test_other_formats_are_refused_by_name(self, tmp_path: Path) -> None:
         for name, content, network in (
             ("a.v1", "UNCORRECTED ACCELEROGRAM DATA\nX\nUNIVERSIDAD DE CHILE - RENADIC\n", "RENADIC"),
             ("a.V1", "* VOL1DS FILE:  5520/01\n", "BHRC"),
@@ -241,7 +241,7 @@ class TestRefusals:
     # the last third of the lines is lost, or a cell in the middle is damaged
     @pytest.mark.parametrize("name", [name for name in ALL if name not in BINARY])
     @pytest.mark.parametrize("damage", ["cut", "letters", "infinite"])
-    def test_damage_is_refused_by_the_format(self, tmp_path: Path, name: str, damage: str) -> None:
+    def test_a_damaged_file_is_refused_by_its_format(self, tmp_path: Path, name: str, damage: str) -> None:
         content = FILES[name]
         lines = (content if isinstance(content, str) else content.decode("shift-jis")).splitlines()
         # in the middle of the samples of the last component
@@ -254,7 +254,7 @@ class TestRefusals:
         at = accelerations[-1] + 20 if accelerations and len(accelerations) > 1 else len(lines) - 5
         if damage == "cut":
             if name.endswith(("bbp", "csv")):
-                return  # they do not announce their length
+                return  # the format announces no length
             lines = lines[: at if accelerations else -len(lines) * 2 // 3]
         else:
             lines[at] = ("damage" if damage == "letters" else "inf").rjust(8) + lines[at][8:]
@@ -278,23 +278,23 @@ class TestWaveforms:
             assert part.time_step == STEP
             np.testing.assert_allclose(part.values, PARTS["x"], rtol=SINGLE, atol=0)
 
-    def test_sac_of_velocities_or_counts(self, tmp_path: Path) -> None:
+    def test_sac_of_velocities_or_counts_is_refused(self, tmp_path: Path) -> None:
         assert "velocities" in refusal(tmp_path, "a.sac", networks.sac(PARTS["x"], kind=7))
         (part,) = components(tmp_path, "a.sac", networks.sac(np.round(PARTS["x"])))
         assert "whole numbers" in part.notes[0]
 
-    def test_miniseed_of_floats(self, tmp_path: Path) -> None:
+    def test_miniseed_of_floats_is_read(self, tmp_path: Path) -> None:
         content = networks.miniseed(PARTS["x"]) + networks.miniseed(PARTS["y"], channel="HNN")
         parts = {str(part.direction): part for part in components(tmp_path, "a.mseed", content)}
         for axis in "xy":
             np.testing.assert_allclose(parts[axis].values, PARTS[axis], rtol=SINGLE, atol=0)
             assert (parts[axis].unit, parts[axis].time_step) == (None, STEP)
 
-    def test_miniseed_of_counts(self, tmp_path: Path) -> None:
+    def test_miniseed_of_counts_needs_a_unit(self, tmp_path: Path) -> None:
         counts = np.round(PARTS["x"]).astype(np.int32)
         assert "remove the response" in refusal(tmp_path, "a.mseed", networks.miniseed(counts), units="m/s2")
 
-    def test_miniseed_with_a_gap(self, tmp_path: Path) -> None:
+    def test_miniseed_with_a_gap_is_refused(self, tmp_path: Path) -> None:
         due = round(COUNT * STEP * 1e4)
         whole = networks.miniseed(PARTS["x"]) + networks.miniseed(PARTS["x"], start=due)
         (part,) = components(tmp_path, "a.mseed", whole)
@@ -302,11 +302,11 @@ class TestWaveforms:
         gap = networks.miniseed(PARTS["x"]) + networks.miniseed(PARTS["x"], start=due + 5000)
         assert "0.5 s" in refusal(tmp_path, "a.mseed", gap)
 
-    def test_damage(self, tmp_path: Path) -> None:
+    def test_a_damaged_waveform_is_refused(self, tmp_path: Path) -> None:
         assert "SAC" in refusal(tmp_path, "a.sac", networks.sac(PARTS["x"])[:-90])
         assert "miniSEED" in refusal(tmp_path, "a.mseed", networks.miniseed(PARTS["x"])[:90])
 
-    def test_without_obspy_the_extra_is_named(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_missing_obspy_names_the_extra(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(sys.modules, "obspy", None)
         for name, content in {
             "a.sac": networks.sac(PARTS["x"]),
@@ -328,7 +328,7 @@ def test_every_reader_has_files_that_it_alone_recognises(tmp_path: Path) -> None
     assert without_file == {"PEER AT2", "format that is not read"}
 
 
-def test_a_folder_of_kiknet_is_its_sensor_at_the_surface(tmp_path: Path) -> None:
+def test_a_folder_of_kiknet_gives_the_surface_sensor(tmp_path: Path) -> None:
     for place, code in enumerate("213546"):
         ending = ("EW1", "NS1", "UD1", "EW2", "NS2", "UD2")[place]
         scaled = COUNTS * (place + 1)
@@ -350,7 +350,7 @@ def test_three_files_of_esm_are_one_record(tmp_path: Path) -> None:
         np.testing.assert_allclose(motion.acceleration[:, place], PARTS[axis] / 100.0, rtol=0, atol=1e-12)
 
 
-def test_fill_values_behind_the_last_sample_are_left_out(tmp_path: Path) -> None:
+def test_fill_values_after_the_last_sample_are_dropped(tmp_path: Path) -> None:
     filled = {axis: np.append(values[:-2], [-9999.9, -9999.9]) for axis, values in PARTS.items()}
     for part in components(tmp_path, "jma.csv", networks.jma(filled)):
         assert_read(part, PARTS[str(part.direction)][:-2], "cm/s2")
@@ -365,7 +365,7 @@ def test_a_step_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_header_with_nothing_or_noise_behind_it_is_refused(tmp_path: Path) -> None:
+def test_a_header_without_samples_is_refused(tmp_path: Path) -> None:
     random = np.random.default_rng(1)
     # tables of .bbp announce no length
     for content in (each for name, each in FILES.items() if isinstance(each, str) and "bbp" not in name):
@@ -384,7 +384,7 @@ SHAPES = [(16, 0.02), (37, 0.01), (80, 0.005), (121, 0.02), (240, 0.01)]
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_any_motion_is_read_and_turned_round_with_its_sign(
+def test_any_motion_is_read_with_its_directions_and_signs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     count, step = SHAPES[list(ALL).index(name) % len(SHAPES)]
@@ -404,7 +404,8 @@ def test_any_motion_is_read_and_turned_round_with_its_sign(
             assert part.notes == (("offset of the sensor not removed",) if name == "a.EW" else ())
 
 
-# the largest sample may be off by 2 % of the stated peak of either sign; by a factor of 2 the file is damaged
+# the largest sample may differ by 2 % from the stated peak of either sign; by a factor of 2 the file is
+# damaged
 VERDICTS = {0.49: "refused", 0.51: "noted", 0.985: "agrees", 1.03: "noted", 2.05: "refused", -1.0: "agrees"}
 
 
@@ -423,14 +424,14 @@ def test_the_peak_of_the_header_is_compared_with_that_of_the_samples(
             said = [match for note in part.notes if (match := NOTE_OF_A_PEAK.fullmatch(note))]
             assert len(said) == (VERDICTS[ratio] == "noted")
             due = parts[str(part.direction)]
-            due = due - due.mean() if name == "a.EW" else due  # NIED states it without the mean
+            due = due - due.mean() if name == "a.EW" else due  # NIED states the peak without the mean
             for match in said:
                 found = (float(match[1]), float(match[2]))
                 assert found == pytest.approx((ratio * np.abs(due).max(), np.abs(due).max()), rel=1e-3)
 
 
 @pytest.mark.parametrize("name", WITH_PEAKS)
-def test_every_network_that_states_a_peak_has_it_compared(
+def test_a_stated_peak_is_compared_in_every_network(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     monkeypatch.setattr(networks, "STATED", 0.45)
@@ -449,7 +450,7 @@ NO_DIRECTIONS = ("H1", "HN1", "HXE", "BDZ", "L", "T", "Radial", "")
 
 @pytest.mark.parametrize("key", ["STREAM", "COMPONENT"])
 def test_esm_names_a_component_by_its_direction_or_by_a_stream(tmp_path: Path, key: str) -> None:
-    """Of a stream the third letter is the direction, if the second is that of a seismic instrument."""
+    """In a stream the third letter is the direction, if the second is that of a seismic instrument."""
     values = any_motion(np.random.default_rng(7))["x"]
     names: dict[str, str | None] = {name: axis for axis, words in SPELLINGS.items() for name in words}
     names |= {name: {"E": "x", "N": "y", "Z": "z"}[letter] for name, letter in STREAMS.items()}
@@ -485,7 +486,7 @@ def test_a_quadrant_bearing_is_converted_to_an_azimuth(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("columns", ["H1,H2,Up", [1, 3, 2], "time,Chan 1: H1,h2,up"])
-def test_the_channels_that_the_user_names_win(tmp_path: Path, columns: str | list[str | int]) -> None:
+def test_channels_named_by_the_user_take_precedence(tmp_path: Path, columns: str | list[str | int]) -> None:
     parts = any_motion(np.random.default_rng(7))
     path = tmp_path / "a.V2"
     path.write_text(networks.csmip(parts, {"x": "H1", "z": "Up", "y": "H2"}, volume=2))
@@ -507,7 +508,7 @@ def test_damage_is_refused_with_the_words_of_obspy_in_a_line(
 ) -> None:
     components(
         tmp_path, "a.sac", BINARY["a.sac"](networks.motion())
-    )  # imports it, with its warnings left out
+    )  # imports obspy, with its warnings left out
     import obspy
 
     def fail(*args: object, **options: object) -> None:

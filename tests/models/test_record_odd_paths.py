@@ -1,4 +1,4 @@
-"""What a path may be in the place of a record: each is refused at once, in a line that names it."""
+"""Paths that are no record: each is refused at once, in a line that names it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     Path("edge").symlink_to("circle")
     os.mkfifo("pipe")
     with Path("gigabytes.txt").open("wb") as file:
-        file.truncate(10**12)  # takes no place on the disk
+        file.truncate(10**12)  # takes no space on the disk
     Path("empty.csv").write_text("")
     Path("blank.csv").write_text(" \n\n\t\n")
     for name in FOLDERS:
@@ -72,7 +72,7 @@ def test_a_path_that_is_no_record_or_table_is_refused(monkeypatch: pytest.Monkey
         with pytest.raises(ValueError, match=f"the table of records {path}.* cannot be read"):
             read_records(path)
 
-    def refuse(path: Path) -> bytes:  # whoever runs the tests may be allowed to read everything
+    def refuse(path: Path) -> bytes:  # the user who runs the tests may be allowed to read everything
         raise PermissionError(13, "Permission denied", str(path))
 
     monkeypatch.setattr(Path, "read_bytes", refuse)

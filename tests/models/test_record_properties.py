@@ -1,4 +1,4 @@
-"""What holds of any file of a kind: of any table, of columns in any order, of components of either side."""
+"""Properties of any file of a kind: any table, columns in any order, components of either sense."""
 
 from __future__ import annotations
 
@@ -30,10 +30,8 @@ EAST, NORTH = ("E", "EAST", "90", "090"), ("N", "NORTH", "360", "0")
 
 @pytest.mark.parametrize("along", ["EAST", "090", "W", "270"])
 @pytest.mark.parametrize("across", ["N", "360", "180"])
-def test_an_at2_component_looks_to_the_side_that_its_title_states(
-    write: Write, along: str, across: str
-) -> None:
-    """The same motion by components of either side, once it is turned to east and north."""
+def test_an_at2_component_has_the_azimuth_in_its_title(write: Write, along: str, across: str) -> None:
+    """One motion from components of either sense, after rotation to east and north."""
 
     def component(word: str, values: NDArray[np.float64], name: str) -> Path:
         numbers = "\n".join(f"{value:.6e}" for value in values)
@@ -55,23 +53,23 @@ def unit_vector(azimuth: float) -> NDArray[np.float64]:
 @pytest.mark.parametrize("first", [44, 45, 46, 250])
 @pytest.mark.parametrize("turn", [90, -90])
 def test_x_is_the_azimuth_nearer_to_east(write: Write, first: int, turn: int) -> None:
-    """Where both are as near, x is clockwise of y as seen from above; turned to north they are one motion."""
+    """For two alike, x is clockwise of y seen from above; rotated to north they are one motion."""
     second = (first + turn) % 360
     east_north = MOTION[:, :2]
     columns = [east_north @ unit_vector(azimuth) for azimuth in (first, second)]
     path = write(table([0.01 * np.arange(len(MOTION)), *columns], f"time,{first:03d},{second:03d}"))
     motion = read_record(path, units="m/s2")
     nearer = [abs(unit_vector(azimuth)[0]) for azimuth in (first, second)]
-    # x follows y clockwise where its azimuth is y's and 90 deg
+    # x is clockwise of y where its azimuth is that of y plus 90 deg
     x = int(nearer[1] > nearer[0]) if abs(nearer[0] - nearer[1]) > 1e-9 else int(turn == 90)
     assert motion.acceleration == pytest.approx(np.column_stack([columns[x], columns[1 - x]]), abs=1e-4)
     turned = read_record(path, units="m/s2", rotate="north")
-    assert turned.acceleration == pytest.approx(east_north, abs=2e-4)  # of the digits in the file
+    assert turned.acceleration == pytest.approx(east_north, abs=2e-4)  # rounding of the digits in the file
 
 
 @pytest.mark.parametrize(("count", "step"), [(2, 0.02), (181, 0.005)])
 def test_a_record_summary_states_samples_step_and_components(write: Write, count: int, step: float) -> None:
-    """A mean above a twentieth of the peak is said beside it."""
+    """A mean above a twentieth of the peak is stated, too."""
     chance = np.random.default_rng(count)
     for offset in (0.0, 0.04, 0.06):
         values = chance.choice([-1.0, 1.0], (count, 2)) * chance.uniform(0.2, 1.0, (count, 2))
@@ -96,7 +94,7 @@ def test_a_format_is_known_by_200_characters_of_60_lines(write: Write) -> None:
     assert not open_record(write("NPTS".rjust(201))).head[0].endswith("NPTS")
 
 
-# one unit in m/s^2, and how files spell it; in capitals and with blanks and brackets as well
+# one unit in m/s^2, and its spellings in files; in capitals and with blanks and brackets as well
 SPELLINGS = {
     "g": (9.81, "g G g's"),
     "m/s2": (1.0, "m/s2 m/s^2 m/s² m/s/s m/sec2 m/sec/sec m/s**2 m·s⁻² ms-2"),
@@ -113,8 +111,8 @@ SPELLINGS = {
 
 
 @pytest.mark.parametrize("unit", SPELLINGS)
-def test_numbers_are_in_the_unit_that_is_spelled_wherever_it_stands(write: Write, unit: str) -> None:
-    """In the name of each column, in a row of units, in a line of words, or as the user gives it."""
+def test_the_spelled_unit_is_used_at_every_place(write: Write, unit: str) -> None:
+    """In the name of each column, in a row of units, in a line of words, or from the user."""
     factor, words = SPELLINGS[unit]
     due = factor * MOTION[:, :2]
     columns = [0.01 * np.arange(len(MOTION)), *MOTION[:, :2].T]
@@ -141,7 +139,7 @@ def of_times(times: NDArray[np.float64], values: NDArray[np.float64]) -> str:
 
 @pytest.mark.parametrize("drift", [-0.06, 0.04])
 def test_components_may_drift_apart_by_a_twentieth_of_a_step(write: Write, drift: float) -> None:
-    """Over the whole record, by their steps, or from the start."""
+    """Drift over the whole record, by their steps, or from the start."""
     step, times, values = 0.01, 0.01 * np.arange(400), np.random.default_rng(1).normal(size=400)
     x = write("t,a [g]\n" + of_times(times, values), "x")
     slower = write("t,a [g]\n" + of_times((1.0 + drift / 400) * times, values), "slower")
@@ -158,10 +156,10 @@ def test_components_may_drift_apart_by_a_twentieth_of_a_step(write: Write, drift
 
 @pytest.mark.parametrize(("more", "size"), [(4, 1.0), (5, 0.051), (300, 0.049)])
 @pytest.mark.parametrize("longer", [0, 1])
-def test_what_is_left_of_a_longer_component_is_little_or_over(
+def test_the_excess_of_a_longer_component_is_cut_only_if_small(
     write: Write, more: int, size: float, longer: int
 ) -> None:
-    """A hundredth of its samples, or below a twentieth of its peak; else the user says what becomes of it."""
+    """A hundredth of its samples, or below a twentieth of its peak; else the user decides."""
     count = 400
     values = np.random.default_rng(2).uniform(-1.0, 1.0, count + more)
     values[7] = 1.0
@@ -187,7 +185,7 @@ def test_what_is_left_of_a_longer_component_is_little_or_over(
 def test_components_are_resampled_to_the_largest_step_that_divides_theirs(
     write: Write, parts: int, others: int
 ) -> None:
-    """At least a twentieth of the smaller step; every sample stays, at its time."""
+    """At least a twentieth of the smaller step; every sample keeps its time."""
     common = 0.04 / parts / others
     steps = [parts * common, others * common]
     known = [np.random.default_rng(3).normal(size=round(0.4 / step) + 1) for step in steps]
@@ -212,8 +210,8 @@ def test_components_are_resampled_to_the_largest_step_that_divides_theirs(
 
 
 @pytest.mark.parametrize("head", ["UNITS OF G\nNPTS= 27, DT= .01 SEC\n", "dt=0.01 s, acc in g\n"])
-def test_more_digits_than_a_number_has_are_numbers_that_touch(write: Write, head: str) -> None:
-    """Whole numbers of fixed columns without a blank between them cannot be parted."""
+def test_numbers_with_more_digits_than_a_double_are_refused(write: Write, head: str) -> None:
+    """Whole numbers in fixed columns without a blank between them cannot be separated."""
     for digits in (16, 17):
         chance = np.random.default_rng(digits)
         cells = ["".join(map(str, chance.integers(1, 10, digits))) for _ in range(27)]
@@ -234,10 +232,10 @@ def test_more_digits_than_a_number_has_are_numbers_that_touch(write: Write, head
         *(("12345", 5.1, True), ("9990", 5.1, False)),
     ],
 )
-def test_a_spike_or_a_fill_value_is_no_sample(
+def test_a_spike_or_a_fill_value_is_refused(
     write: Write, fill: str | None, ratio: float, refused: bool, sign: float
 ) -> None:
-    """A million times all others, or of nines or 12345 and five times them: refused, as at the end."""
+    """A million times all others, or nines or 12345 and five times them: refused, as at the end."""
     others = MOTION[:, 0] / np.abs(MOTION[:, 0]).max() * 2500.0
     spike = sign * float(fill or 2500.0 * ratio)
     others *= abs(spike) / ratio / 2500.0

@@ -1,4 +1,4 @@
-"""Free text as people's disks have it, of invented values: each is read rightly, or refused in one line."""
+"""Free text in many layouts, of invented values: read correctly, or refused in one line."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def table(
 
 
 def semicolons(header: str, *columns: Values) -> str:
-    """Return what a spreadsheet writes where the comma is the decimal point."""
+    """Text of a spreadsheet in which the comma is the decimal point."""
     return table(header, *columns, separator=";", comma=",").replace("\n", "\r\n")
 
 
@@ -58,7 +58,7 @@ def lines(values: Values, width: int, form: str = "%12.3f") -> str:
 
 GAL = "t [s],E [gal],N [gal]"
 APP = np.round(1.7e9 + TIME, 2)
-# name: content, what it holds [cm/s^2], options
+# name: content, expected values [cm/s^2], options
 READ: Mapping[str, tuple[str | bytes, Mapping[str, Values], dict[str, Any]]] = {
     "units_row.csv": (
         "\ufeff"
@@ -218,7 +218,7 @@ def test_the_line_of_a_damaged_row_is_named(write: Write, row: int, cut: str) ->
         read_record(write("\n".join(whole)))
 
 
-# the same motion under names of many languages, in any order and separator: x is east, y north, z up
+# one motion with column names in many languages, in any order and separator: x is east, y north, z up
 NAMES = {
     "Time (s);U-D (gal);N-S (gal);E-W (gal)": "zyx",
     "Zeit [ms],Vertikal [gal],Ost-West [gal],Nord-Süd [gal]": "zxy",
@@ -239,7 +239,7 @@ UNIT_OF_TIME = {"Zeit": 1e-3, "time_us": 1e-6, "time_ns": 1e-9}
 
 
 @pytest.mark.parametrize("header", NAMES)
-def test_names_decide_in_any_language_and_order(write: Write, header: str) -> None:
+def test_column_names_decide_in_any_language_and_order(write: Write, header: str) -> None:
     seconds = next((unit for word, unit in UNIT_OF_TIME.items() if header.startswith(word)), 1.0)
     unit = "m/s2" if "m/s2\n" in header + "\n" and "cm" not in header else "cm/s2"
     columns = [ALL[axis] for axis in NAMES[header]]
@@ -262,8 +262,8 @@ def test_the_columns_that_the_user_numbers_are_read_in_any_order(write: Write) -
 
 
 @pytest.mark.parametrize("late", [1, COUNT - 2])
-def test_resampling_moves_a_late_sample_to_its_even_time(write: Write, late: int) -> None:
-    """Linearly between the samples of the file; a gap is refused even so."""
+def test_resampling_interpolates_a_late_sample_at_its_even_time(write: Write, late: int) -> None:
+    """Linear interpolation between the samples of the file; a gap is refused all the same."""
     time = TIME.copy()
     time[late] += 0.3 * STEP
     path = write(table(GAL, EAST, NORTH, first=time))

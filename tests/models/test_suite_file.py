@@ -27,7 +27,7 @@ def replaced(old: str, new: str) -> str:
     return CASE.replace(old, new)
 
 
-def test_everything_that_is_given_arrives(write):
+def test_every_key_of_a_suite_file_is_used(write):
     text = """
     [[runs]]
     engine = "mujoco"
@@ -62,7 +62,7 @@ def test_everything_that_is_given_arrives(write):
     assert (case.name, case.duration, case.gravity, case.friction) == ("all of it", 4.0, 9.8, 0.7)
 
 
-def test_lists_and_ranges_make_each_combination_once_and_name_it(write):
+def test_lists_and_ranges_give_each_combination_one_named_case(write):
     text = replaced("tan_alpha = 0.2", "tan_alpha = [0.1, 0.2]").replace(
         "tilt_over_alpha = 0.5", "tilt_over_alpha = { from = 0.2, to = 0.6, step = 0.2 }"
     )
@@ -90,19 +90,19 @@ RANGES = {
 
 
 @pytest.mark.parametrize("given", RANGES)
-def test_values_of_a_range(write, given):
+def test_a_range_includes_its_end(write, given):
     suite = read_suite(write(replaced("semidiagonal = 6", f"semidiagonal = {given}")))
     assert [case.cylinder.semidiagonal for case in suite.cases] == RANGES[given]
     assert len({case.name for case in suite.cases}) == len(RANGES[given])
 
 
-def test_lists_of_runs_make_each_combination(write):
+def test_lists_of_runs_give_each_combination_once(write):
     text = '[[runs]]\nengine = ["mujoco", "pybullet"]\ntime_step = [1e-4, 2e-4]\n' + CASE
     runs = [(run.engine, run.support, run.time_step) for run in read_suite(write(text)).runs]
     assert runs == [(name, "recess", step) for name in ("mujoco", "pybullet") for step in (1e-4, 2e-4)]
 
 
-def test_files_of_a_record_stand_beside_the_suite(write, tmp_path, monkeypatch):
+def test_record_files_are_relative_to_the_suite(write, tmp_path, monkeypatch):
     (tmp_path / "records").mkdir()
     for name, peak in (("x", 1.0), ("y", 2.0)):
         (tmp_path / "records" / f"{name}.csv").write_text(f"0, 0\n0.1, {peak}\n0.2, 0\n")
@@ -117,10 +117,10 @@ def test_times_uplift_is_the_peak_over_g_tan_alpha(write):
     motion = 'motion = { record = "el_centro_1940", times_uplift = [1.5, 2] }'
     for case in read_suite(write(replaced(STILL, motion) + "gravity = 3.7\n")).cases:
         ratio = case.motion.peak / (3.7 * case.cylinder.tan_alpha)
-        assert ratio == pytest.approx(float(case.name.split()[-1]), rel=1e-14)  # one scaling, rounding
+        assert ratio == pytest.approx(float(case.name.split()[-1]), rel=1e-14)  # rounding of one scaling
 
 
-def test_a_pulse(write):
+def test_a_pulse_of_a_suite_file_is_that_of_the_function(write):
     motion = (
         'motion = { pulse = "one-sine", period = 2, times_uplift = 3, azimuth_deg = 90, time_shift = 0.5 }'
     )
@@ -133,7 +133,7 @@ def test_a_pulse(write):
 
 
 @pytest.mark.parametrize("width", ["base_radius = 1", "diameter = 2"])
-def test_a_body_by_its_dimensions(write, width):
+def test_a_body_may_be_given_by_its_dimensions(write, width):
     body = f"cylinder = {{ {width}, height = 10, mass_centre_height = [4, 6] }}"
     low, high = read_suite(write(replaced("cylinder = { semidiagonal = 6, tan_alpha = 0.2 }", body))).cases
     assert low.cylinder.base_radius == pytest.approx(1.0)
@@ -143,7 +143,7 @@ def test_a_body_by_its_dimensions(write, width):
 
 SLOPE, LENGTH = "tan_alpha = 0.2", "duration = 8"
 ENGINE = '[[runs]]\nengine = "mujoco"\n'
-# in place of a part of the case: what is said of it
+# replacement in a part of the case: message of the error
 WRONG_PARTS = {
     (SLOPE, "tan_alpha = -0.2"): "cases[0].cylinder.tan_alpha: must be positive, got -0.2",
     (SLOPE, "tan_alpha = [0.2, 0.2]"): "tan_alpha[1]: must differ from the others, got 0.2",
@@ -230,7 +230,7 @@ WAYS = {
     "remove_mean": "true", "rotate": '"north"', "resample": "true",
 }  # fmt: skip
 OF_ALL = {"times_uplift": "2", "time_shift": "1"}
-# what tells a kind of motion: its own keys, which those of no other kind may stand beside
+# keys that identify a kind of motion, and which those of no other kind may accompany
 KINDS = {
     'record = "el_centro_1940"': {"vertical": "true", "rotation_deg": "30"},
     'record = "p695", pair = 3': {"rotation_deg": "30"},
@@ -258,7 +258,7 @@ def test_a_motion_has_the_keys_of_its_kind_and_of_no_other(write, kind):
         except ValueError as error:
             said = str(error)
         own = key in KINDS[kind] | OF_ALL or ("pulse" in kind and key == "amplitude")
-        if own:  # what it names may be missing
+        if own:  # the file may be missing
             assert "must be" not in said, (key, said)
         else:
             assert re.search(r"cases\[0\]\.motion.*: must (be left out|have exactly one of)", said), (
@@ -267,7 +267,7 @@ def test_a_motion_has_the_keys_of_its_kind_and_of_no_other(write, kind):
             )
 
 
-def test_the_suites_that_ship_are_read_by_name(tmp_path):
+def test_shipped_suites_are_read_by_name(tmp_path):
     for name in ("quick", "canon"):
         suite = read_suite(name)
         again = read_suite(Path(models.__path__[0]) / "suites" / f"{name}.suite.toml")

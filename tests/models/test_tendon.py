@@ -1,4 +1,4 @@
-"""A tendon in weights and base radii, from steel, and what is refused."""
+"""A tendon in weights and base radii, from steel, and its refusals."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_steel_in_newtons_and_metres_is_the_same_tendon() -> None:
     assert tendon.yield_force == pytest.approx(600e3 / (45e3 * 9.81))
 
 
-def test_under_a_slab_it_crosses_two_gaps() -> None:
+def test_a_tendon_under_a_slab_crosses_two_gaps() -> None:
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     tendon = Tendon(prestress=0.5, stiffness=3.0)
     frame = rw.WobblingFrame(pier, 2.0)
@@ -71,7 +71,7 @@ def test_an_invalid_tendon_is_refused(options: dict[str, object], words: str) ->
         Tendon(**options)  # type: ignore[arg-type]
 
 
-def test_a_case_takes_nothing_else_for_a_tendon() -> None:
+def test_a_case_refuses_anything_but_a_tendon() -> None:
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     with pytest.raises(ValueError, match="tendon"):
         rw.Case(pier, rw.el_centro_1940(), tendon=0.5)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""What holds of any trace, whatever made it: quantities by their definitions, the words of a summary."""
+"""Properties of any trace: quantities by their definitions, the words of a summary."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SEEDS = range(4)  # a column or a frame, with or without a tendon
 
 
 def any_trace(seed: int, **given: Any) -> Trace:
-    """Return a trace of random numbers, of a column or a frame, with or without a tendon."""
+    """Trace of random numbers, of a column or a frame, with or without a tendon."""
     chance = np.random.default_rng(seed)
     count = int(chance.integers(5, 30))
     body: Cylinder | WobblingFrame = Cylinder(semidiagonal=chance.uniform(0.5, 20.0), tan_alpha=0.2)
@@ -57,7 +57,7 @@ def any_trace(seed: int, **given: Any) -> Trace:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_friction_demand_is_horizontal_over_normal_force_however_small(seed: int) -> None:
+def test_friction_demand_is_horizontal_over_normal_force_for_any_size(seed: int) -> None:
     trace = any_trace(seed)
     for force, found in (
         (trace.contact_force, trace.friction_needed),
@@ -86,7 +86,7 @@ def test_demands_are_taken_in_motion_from_a_thousandth_of_alpha_on(seed: int) ->
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_lengths_follow_from_tilt_and_place(seed: int) -> None:
+def test_lengths_follow_from_tilt_and_position(seed: int) -> None:
     """A tilt opens a gap by the chord of the base; the top of a column moves twice as far as its middle."""
     trace = any_trace(seed)
     body, tendon = trace.case.cylinder, trace.case.tendon
@@ -104,7 +104,7 @@ def test_lengths_follow_from_tilt_and_place(seed: int) -> None:
         assert np.isnan(trace.tendon_force).all()
         assert math.isnan(trace.peak_tendon_force)
         return
-    # the chord between both places of a point of the base, by its corner at the axis
+    # chord between both positions of a point of the base, by its corner at the axis
     chord = b * np.hypot(1.0 - np.cos(trace.tilt), np.sin(trace.tilt))
     gaps = 1 + (body.slab_mass_ratio > 0.0)
     assert trace.elongation == pytest.approx(gaps * chord, rel=1e-9)
@@ -118,7 +118,7 @@ def test_lengths_follow_from_tilt_and_place(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("beyond", [0.9, 1.1])
-def test_the_peak_is_within_the_run_or_where_it_was_followed_to(seed: int, beyond: float) -> None:
+def test_the_peak_is_within_the_run_or_in_the_motion_followed_after(seed: int, beyond: float) -> None:
     trace = any_trace(seed)
     at = int(np.argmax(trace.tilt))
     assert (trace.peak_time, trace.peak_within_run) == (trace.time[at], trace.peak_tilt)
@@ -127,13 +127,13 @@ def test_the_peak_is_within_the_run_or_where_it_was_followed_to(seed: int, beyon
     within = max(largest, beyond * largest)
     followed = any_trace(seed, extrema=turning, followed_until=99.5, peak_tilt=1.2 * largest)
     assert (followed.peak_within_run, followed.peak_time) == (within, 99.5)
-    # a swing that goes on and comes no further
+    # motion after the end with a smaller maximum
     ended = any_trace(seed, extrema=turning, followed_until=99.5, peak_tilt=within)
     assert (ended.peak_within_run, ended.peak_time) == (within, trace.time[at])
     assert trace.residual_twist == trace.twist[-1]
 
 
-def test_the_summary_says_what_the_trace_holds() -> None:
+def test_the_summary_has_the_values_of_the_trace() -> None:
     passes = pd.DataFrame({"time": [0.1, 0.2]})
     facts = [Diagnostic(code=code, time=at) for code, at in (("slip", 0.5), ("energy", 0.2), ("slip", 0.1))]
     trace = any_trace(
@@ -157,7 +157,7 @@ def test_the_summary_says_what_the_trace_holds() -> None:
         assert repr(stands).startswith(f"Trace(mujoco recess: outcome stands at {end}{words}, mode ")
 
 
-def test_a_lost_run_says_that_it_failed_and_why() -> None:
+def test_a_lost_run_has_failed_with_a_reason() -> None:
     case, run = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0), Run("mujoco", "flat")
     trace = lost_trace(case, run, "signal 9")
     said = {"outcome": "failed", "mode": "not known", "peak tilt": "not known", "diagnostics": "died"}
@@ -178,7 +178,7 @@ def test_the_first_of_several_diagnostics_is_the_earliest_of_its_codes() -> None
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_trace_comes_back_from_its_file_with_the_same_bits(seed: int, tmp_path: Path) -> None:
+def test_a_stored_trace_is_read_with_the_same_bits(seed: int, tmp_path: Path) -> None:
     trace = any_trace(seed, followed_until=3.5, step_count=7, error_estimate=1e-9, settings={"cone": "round"})
     path = tmp_path / "a.parquet"
     trace.save(path)
@@ -197,7 +197,7 @@ def test_a_trace_comes_back_from_its_file_with_the_same_bits(seed: int, tmp_path
         np.testing.assert_array_equal(trace.to_frame()[name], trace.centre_of_mass[:, place])
 
 
-def test_a_file_that_is_none_damaged_or_old_is_refused(tmp_path: Path) -> None:
+def test_a_foreign_damaged_or_old_file_is_refused(tmp_path: Path) -> None:
     trace, path = any_trace(1), tmp_path / "run.parquet"
     trace.save(path)
     whole = path.read_bytes()

@@ -59,7 +59,7 @@ from . import (
 
 
 class Reader(Protocol):
-    """A module that reads one format."""
+    """Interface of a module that reads one format."""
 
     NAME: str
 
@@ -110,7 +110,7 @@ def read_components(file: RecordFile, reading: Reading) -> list[Component]:
             components = reader.read(file, reading)
             if reading.columns and reader is not text and len(components) > 1:
                 components = as_named(components, reading.column_texts, file.name)
-            for component in components:  # a step that the user gives must be that of the file
+            for component in components:  # a step given by the user must be that of the file
                 reading.settled_step(component.path.name, component.time_step)
             return [without_filled_end(component, cut=reader is not text) for component in components]
     file.text  # noqa: B018 - says that the file is binary where it is

@@ -15,7 +15,7 @@ _PEAK = re.compile(r"\(\s*([NSEWUD]-[NSEWUD])\s*\)\s*([-+]?\d{1,6}(?:\.\d{1,9})?
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the header says so: strong ground motion records of Turkey."""
+    """Whether the header has the words of AFAD: strong ground motion records of Turkey."""
     return any("STRONG GROUND MOTION RECORDS OF TURK" in line for line in file.head[:_HEADER_LINES])
 
 
@@ -59,7 +59,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 
 
 def _names(line: str) -> list[str]:
-    """Return the names of the columns of a line that holds nothing else, else none."""
+    """Names of the columns if a line holds nothing else, else none."""
     words = line.split()
     return words if len(words) == 3 and all(map(direction_of, words)) else []
 

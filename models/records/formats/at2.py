@@ -21,7 +21,7 @@ _LONGEST_HEADER = 200  # the line has 80 characters; bounds what a pattern can c
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether a header line announces a number of points (NPTS)."""
+    """Whether a header line states a number of points (NPTS)."""
     return any("NPTS" in line for line in file.head[:_HEADER_LINES])
 
 
@@ -41,7 +41,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
     ended = len(file.text) > at + 1 and _END.fullmatch(file.text[-1]) is not None
     values = block_of_numbers(file, at + 1, len(file.text) - ended)
     rest = values[count:]
-    # the last line may be filled up, with zeros or 9999, and the ground is still after the record anyway
+    # the last line may be padded with zeros or 9999, and the ground is still after the record anyway
     filled = without_fill(rest)[0] if len(rest) < _MOST_FILLED else rest
     if len(values) < count or filled.any():
         raise ValueError(
@@ -65,7 +65,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 def _orientation(file: RecordFile, at: int) -> tuple[float | None, float]:
     """Azimuth [deg], and 1 up or -1 down, by "azimuth = 310.0" or the title "event, date, station, 180"."""
     stated = {float(match[1]) % 360.0 for line in file.head[:at] if (match := _AZIMUTH.search(line))}
-    if stated:  # a rotated component: its other lines describe the components it is made of
+    if stated:  # in a rotated component the other lines describe the two original components
         return (stated.pop() if len(stated) == 1 else None), 0.0
     for line in file.head[:at]:
         words = [word.strip() for word in line.split(",")]

@@ -25,7 +25,7 @@ _SEQUENCE = ("N-S", "E-W", "U-D")  # order of components in the platform's forma
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the name of the file ends in .bbp."""
+    """Whether the file name ends in .bbp."""
     return file.name.lower().endswith(".bbp") and file.lines is not None
 
 
@@ -64,7 +64,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 
 
 def _columns(header: list[str]) -> list[tuple[str, str]]:
-    """Return name and unit of the columns behind the time; the format's own where none are named."""
+    """Names and unit of the columns after the time; the format's defaults where none are named."""
     for line in header:
         if len(cells := _COLUMN.findall(line[:200])) == 4:
             return cells[1:]
@@ -76,7 +76,7 @@ def _columns(header: list[str]) -> list[tuple[str, str]]:
 
 
 def _unit(file: RecordFile, word: str, reading: Reading) -> str | None:
-    """Return the unit of acceleration, by the columns, else by the name of the file."""
+    """Unit of acceleration, by the columns, else by the name of the file."""
     acceleration = file.name.lower().endswith(".acc.bbp")
     if re.fullmatch(r"c?m/s(ec)?", word, re.IGNORECASE):
         but = ", though its name says acceleration" if acceleration else ""

@@ -27,20 +27,20 @@ _UNITS = {
     11: ("g", 1e-3),
     12: ("g", 1e-6),
 }
-# places of the headers, counted from 0, and what is unknown
+# positions in the headers, counted from 0, and the value for unknown
 _AZIMUTH, _INTERVAL, _LENGTH, _PEAK = 53, 61, 62, 63
 _UNKNOWN = -999
-_SHORTEST_LINE = 7  # shorter lines are not looked at
+_SHORTEST_LINE = 7  # shorter lines are skipped
 _UP, _DOWN, _VERTICAL = 400, 401, 402
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the first line states the version of the format."""
+    """Whether the first line states the version of the format."""
     return bool(file.head) and "(FORMAT V" in file.head[0]
 
 
 def read(file: RecordFile, reading: Reading) -> list[Component]:
-    """Read the acceleration of every channel; velocities and displacements are passed over.
+    """Acceleration of every channel; velocities and displacements are skipped.
 
     Raises
     ------
@@ -125,13 +125,13 @@ def _component(
 def _orientation(
     where: str, code: int, label: str, stream: str
 ) -> tuple[Direction | None, float | None, bool]:
-    """Return the direction, the azimuth [deg] and whether it points down, by code, text and stream."""
+    """Direction, azimuth [deg] and whether the sensor points down, by code, text and stream."""
     match = _CHANNEL.match(label)
     text = match[1] if match else ""
     stated = azimuth_of(text)
     if code in (_UP, _DOWN, _VERTICAL) and stated is None:
         return "z", None, code == _DOWN
-    azimuth = float(code % 360) if 1 <= code <= 360 else None  # 0 is none of the format's azimuths
+    azimuth = float(code % 360) if 1 <= code <= 360 else None  # 0 is no azimuth in this format
     if azimuth is not None and stated not in (None, azimuth):
         raise ValueError(f"{where}: the header states two orientations, {stated:g} deg and code {code}")
     if code in (_UP, _DOWN, _VERTICAL):
@@ -139,6 +139,6 @@ def _orientation(
             f"{where}: the header states two orientations, {stated:g} deg and code {code}, vertical"
         )
     azimuth = stated if azimuth is None else azimuth
-    # a stream of three letters, HNE, names its direction last
+    # in a stream of three letters, such as HNE, the last is the direction
     named = direction_of(text.split()[0] if text else "") or direction_of(stream[2:])
     return (direction_at(azimuth) if azimuth is not None else named), azimuth, False

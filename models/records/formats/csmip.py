@@ -19,19 +19,19 @@ _UNIT = re.compile(r"(?:UNITS OF|UNITS:|SEC, IN)\s+([A-Z/*^0-9]{1,12})")
 _CHANNEL = re.compile(r"CHAN\s{0,9}(\d{1,4})\s?:\s{0,9}(.{0,60})")
 _PEAK = re.compile(r"(?:PEAK ACCELERATION|UNITS OF UNCOR .{1,40}MAX)\s*=\s*([-+]?\d{0,9}\.\d{1,9})")
 _PARTS_OF_G = {"G/10": 0.1, "MG": 1e-3}
-_SHORTEST_LINE = 8  # shorter lines are not looked at
+_SHORTEST_LINE = 8  # shorter lines are skipped
 _NUMBERS_PER_LINE = {"V1": (8, 9), "V2": (8, 10)}
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the title is that of an accelerogram, corrected or not, or of its spectra."""
+    """Whether the title is that of an accelerogram, corrected or not, or of its spectra."""
     title = "\n".join(file.head[:3])
     others = title.lstrip().startswith(("1 ", "2 ")) or "GNS SCIENCE" in title  # SMC, GeoNet
     return "CORRECTED ACCELEROGRAM" in title and not others
 
 
 def read(file: RecordFile, reading: Reading) -> list[Component]:
-    """Read the acceleration of every channel; velocities and displacements of volume 2 are passed over.
+    """Acceleration of every channel; velocities and displacements of volume 2 are skipped.
 
     Raises
     ------

@@ -21,7 +21,7 @@ _NUMBERS = re.compile(r"[-+.\d\s]{1,200}")
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether a line of the header gives the points and their equally spaced intervals."""
+    """Whether a header line states the number and the equal spacing of the points."""
     return any("EQUALLY SPACED INTERVALS OF:" in line for line in file.head[:_HEADER_LINES])
 
 
@@ -68,7 +68,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 
 
 def _first_line_of_numbers(file: RecordFile) -> int:
-    """Return the line, counted from 0, of the first samples, which stand behind the line of the peak."""
+    """Number, counted from 0, of the line after that of the peak, with the first samples."""
     peak_at = next((at for at, line in enumerate(file.head[:_HEADER_LINES]) if "PEAK VALUE" in line), 0)
     for at, line in enumerate(file.text[peak_at + 1 : peak_at + 12], start=peak_at + 1):
         if line.strip() and _NUMBERS.fullmatch(line[:200]):

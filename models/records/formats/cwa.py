@@ -18,14 +18,14 @@ _EXTREMES = re.compile(r"\s*([-+]?\d{1,6}\.\d{1,9})\s*~\s*([-+]?\d{1,6}\.\d{1,9}
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the comments name the unit of the amplitude and the sequence of the data."""
+    """Whether the comments name the unit of the amplitude and the sequence of the data."""
     return any(line.startswith("#DATASEQUENCE") for line in file.head) and any(
         line.startswith(("#AMPLITUDEUNIT", "#SAMPLERATE")) for line in file.head
     )
 
 
 def read(file: RecordFile, reading: Reading) -> list[Component]:
-    """Read the columns by the sequence that the header gives, "Time U(+); N(+); E(+)".
+    """Columns in the sequence of the header, "Time U(+); N(+); E(+)".
 
     Raises
     ------
@@ -84,7 +84,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 
 
 def _sequence(file: RecordFile, text: str) -> tuple[list[str], list[float]]:
-    """Return the names of the columns behind the time, and the sign of each positive sense."""
+    """Names of the columns after the time, and the sign of each positive sense."""
     cells = re.findall(r"([A-Z]{1,9})\s*\(([-+])\)", text[:200], re.IGNORECASE)
     if (
         not cells

@@ -17,7 +17,7 @@ _NUMBER = re.compile(r"[-+]?\d{0,12}\.?\d{0,12}(?:[Ee][-+]?\d{1,3})?")
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the header has the keys of the sampling interval and of the component."""
+    """Whether the header has the keys of the sampling interval and of the component."""
     keys = {line.partition(":")[0].strip() for line in file.head}
     return "SAMPLING_INTERVAL_S" in keys and bool(keys & {"STREAM", "COMPONENT", "NDATA"})
 
@@ -53,7 +53,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
             unit=unit,
             format=NAME,
             label=name,
-            # a stream of three letters, HNE, names its direction last
+            # in a stream of three letters, such as HNE, the last is the direction
             direction=direction_of(name[2:] if len(name) == 3 and name[1:2].upper() in "NLHG" else name),
             notes=notes,
         )

@@ -19,12 +19,12 @@ _PEAK = re.compile(r"ACCELERATION:\s+PEAK\s+([-+]?\d{0,9}\.\d{1,9})\s*MM/S/S")
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the first line is the title of an accelerogram of GNS Science."""
+    """Whether the first line is the title of an accelerogram of GNS Science."""
     return bool(file.head) and "CORRECTED ACCELEROGRAM" in file.head[0] and "GNS SCIENCE" in file.head[0]
 
 
 def read(file: RecordFile, reading: Reading) -> list[Component]:
-    """Read the acceleration of each component; velocities and displacements of V2A are passed over.
+    """Acceleration of each component; velocities and displacements of V2A are skipped.
 
     Raises
     ------

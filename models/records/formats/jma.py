@@ -17,7 +17,7 @@ _UNIT = re.compile(r"UNIT\s{0,9}=\s{0,9}([A-Z/]{1,10})")
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the header gives the code of the site and the initial time."""
+    """Whether the header has the site code and the initial time."""
     head = [line.strip() for line in file.head[:_HEADER_LINES]]
     return any(line.startswith("SITE CODE") for line in head) and any("INITIAL TIME" in line for line in head)
 
@@ -54,6 +54,6 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 
 
 def _names(line: str) -> list[str]:
-    """Return the names of the columns of a line that holds nothing else, else none."""
+    """Names of the columns if a line holds nothing else, else none."""
     names = [name.strip() for name in line.strip().rstrip(",").split(",")]
     return names if len(names) == 3 and all(map(direction_of, names)) else []

@@ -30,9 +30,9 @@ _DIRECTIONS: dict[str, tuple[Direction, str]] = {
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the header is that of NIED: origin time first, then the sampling frequency."""
+    """Whether the header is that of NIED: origin time first, then the sampling frequency."""
     head = file.head[:_HEADER_LINES]
-    titled = bool(head) and head[0].startswith("ORIGIN TIME") and "," not in head[0]  # else a CSV made of it
+    titled = bool(head) and head[0].startswith("ORIGIN TIME") and "," not in head[0]  # else a derived CSV
     return titled and any("(HZ)" in line for line in head)
 
 

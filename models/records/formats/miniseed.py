@@ -12,7 +12,7 @@ _QUALITIES = b"DRQMVAST"  # quality of a data record, or kind of a control heade
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the first record begins with a sequence number and a quality code."""
+    """Whether the first record begins with a sequence number and a quality code."""
     content = file.content[:48]
     sequence, quality, reserved = content[:6], content[6:7], content[7:8]
     return (

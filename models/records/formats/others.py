@@ -1,4 +1,4 @@
-"""Formats that are known and not read: each is refused by its name, with what to do."""
+"""Known formats without a reader: each is refused by its name, with advice."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from ..component import Component, RecordFile
 from ..reading import Reading
 
 NAME = "format that is not read"
-_LINES = 16  # of a header that names its format
-# name as its users know it: the first bytes
+_LINES = 16  # lines of a header that names its format
+# common name of each format: its first bytes
 _BYTES: dict[str, tuple[bytes, ...]] = {
     # archives, also those of Excel, MATLAB, HDF5, Parquet, Arrow, arrays of Python, TDMS, SEG-2, pickles
     "packed or binary, as a spreadsheet of Excel": (
@@ -33,7 +33,7 @@ _ENDINGS = {
     **dict.fromkeys((".vt2", ".dt2"), "velocities or displacements of PEER (VT2, DT2)"),
     **dict.fromkeys((".vol", ".vol1", ".vol2"), "GeoNet .vol (GeoNet has V1A and V2A)"),
 }
-# what the first lines say, in capitals
+# text in the first lines, in capitals
 _WORDS = {
     "TIMESERIES text (SLIST, TSPAIR)": r"\ATIMESERIES .*SAMPLE",
     "GSE2/IMS": r"^WID[12] ",
@@ -61,7 +61,7 @@ def _name_of(file: RecordFile) -> str | None:
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Whether a file is of one of these formats."""
+    """Whether a file is in one of these formats."""
     return _name_of(file) is not None
 
 

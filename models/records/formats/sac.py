@@ -56,7 +56,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 
 
 def _orientation(waveform: Waveform) -> tuple[Direction | None, float | None]:
-    """Return the direction and the azimuth [deg], by CMPINC (from up) and CMPAZ, else by the channel."""
+    """Direction and azimuth [deg], by CMPINC (from up) and CMPAZ, else by the channel."""
     inclination, azimuth = _number(waveform, "cmpinc"), _number(waveform, "cmpaz")
     if inclination == 0.0:
         return "z", None

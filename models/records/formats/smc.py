@@ -12,14 +12,14 @@ _TITLES = ("1 UNCORRECTED ACCELEROGRAM", "2 CORRECTED ACCELEROGRAM")
 _OTHERS = ("3 VELOCITY", "4 DISPLACEMENT", "VELOCITY", "DISPLACEMENT")
 _TEXT_LINES = 11
 _INTEGERS, _REALS, _SAMPLES = (8, 10), (5, 15), (8, 10)  # numbers in a line, and characters of each
-# places of the headers, counted from 0
+# positions in the headers, counted from 0
 _INCLINATION, _AZIMUTH, _COMMENTS, _COUNT = 12, 13, 15, 16
 _RATE, _LARGEST, _SMALLEST = 1, 29, 31
 _UNKNOWN = 1.7e38
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Return whether the first line is a title of the format and the next and eleventh a star."""
+    """Whether the first line is a title of the format, and the next and the eleventh a star."""
     head = [line.strip() for line in _text(file).head[:_TEXT_LINES]]
     return (
         len(head) == _TEXT_LINES
@@ -78,14 +78,14 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 
 
 def _text(file: RecordFile) -> RecordFile:
-    """Return a file without the null bytes that some have in the code of the station."""
+    """File without the null bytes that some have in the station code."""
     if file.lines is not None or not file.content[:26].startswith((b"1 UNCORRECTED", b"2 CORRECTED")):
         return file
     return RecordFile(file.path, file.content.replace(b"\0", b" "))
 
 
 def _orientation(inclination: int, azimuth: int) -> tuple[Direction | None, float | None, bool]:
-    """Return the direction, the azimuth [deg] and whether it points down; an inclination of 0 is up."""
+    """Direction, azimuth [deg] and whether the sensor points down; an inclination of 0 is up."""
     if inclination in (0, 180):
         return "z", None, inclination == 180
     if inclination == 90 and 0 <= azimuth <= 360:

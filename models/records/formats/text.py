@@ -29,18 +29,18 @@ from ..units import stated_unit, unit_of
 
 NAME, VALUES = "columns", "values without times"
 _AXES: tuple[Direction, ...] = ("x", "y", "z")
-_LEAST_COUNT, _LARGEST_STEP = 10, 0.1  # samples and step [s] that may stand in front; of fewer it is chance
+_LEAST_COUNT, _LARGEST_STEP = 10, 0.1  # least count, largest step [s] before the values
 _MANY_DIGITS = re.compile(r"(?<![\d.])\d{17}")  # more than a double holds: whole numbers that touch
-_EPOCH = 1e6  # [s], 11 days: no record begins so late, times since 1970 do
+_EPOCH = 1e6  # [s], 11 days: times since 1970 are later, times of a record earlier
 _QUANTITIES = ("acceleration", "velocity", "displacement")
-# printed times are rounded, as 0.0167 for 1/60: a sample may stand this much of a step off its place
+# printed times are rounded, as 0.0167 for 1/60: largest deviation of a sample from its time, in steps
 _UNEVENNESS = 0.05
-_LONGEST_GAP = 2.0  # median steps; more are missing samples
+_LONGEST_GAP = 2.0  # median steps; a longer gap means missing samples
 
 
 @dataclass(frozen=True, slots=True)
 class _Columns:
-    """The columns of a file, to be given their roles."""
+    """Columns of a file before their roles are assigned."""
 
     file: RecordFile
     values: NDArray[np.float64]
@@ -48,7 +48,7 @@ class _Columns:
     reading: Reading
 
     def doubt(self, why: str) -> ValueError:
-        """Refusal of columns that names do not settle."""
+        """Refusal of columns whose roles the names do not decide."""
         listed = ", ".join(f"{at} {name.text[:16]}".strip() for at, name in enumerate(self.names, 1))
         return ValueError(
             f"{self.file.name}: {why}: name them by {COLUMNS_OPTION}, time, x and y such as 1,2,3 (without "
@@ -56,7 +56,7 @@ class _Columns:
         )
 
     def by_names(self) -> tuple[int | None, dict[int, ColumnName]]:
-        """Column of times, None without one, and those of accelerations, by names and what they hold."""
+        """Column of times, None without one, and those of accelerations, by names and contents."""
         time = self._time()
         others = {at: name for at, name in enumerate(self.names) if at != time}
         values = {at: name for at, name in others.items() if (name.direction or name.azimuth) is not None}
@@ -74,7 +74,7 @@ class _Columns:
         return time, values
 
     def _time(self) -> int | None:
-        """Column that is named as times, else the first if it rises as times do."""
+        """Column named as times, else the first if it increases as times do."""
         kinds, first = [name.kind for name in self.names], self.values[:, 0]
         times = [at for at, kind in enumerate(kinds) if kind == "time"]
         unsaid = [at for at, kind in enumerate(kinds) if kind in ("unknown", "index")]
@@ -122,7 +122,7 @@ class _Columns:
 
 
 def recognizes(file: RecordFile) -> bool:
-    """Whether a file is text: what no other format claims."""
+    """Whether a file is text that no other format recognises."""
     return file.lines is not None
 
 
@@ -154,7 +154,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
         known, others = names_of(header, width)
         timeless = known and known[0].kind in _QUANTITIES and not any(name.kind == "time" for name in known)
         if timeless and _rises_evenly(rows[:, 0]) and not _is_counting(rows[:, 0]):
-            known, others = None, header  # a sentence that looks like names
+            known, others = None, header  # no names: a sentence with words like names
         names = (names_of(header, width, wanted)[0] if wanted else None) or known or [ColumnName()] * width
         columns = _Columns(file, rows, names, reading)
         time, values = columns.by_option(stated_step(file, header)) if reading.columns else columns.by_names()
@@ -185,7 +185,7 @@ def read(file: RecordFile, reading: Reading) -> list[Component]:
 
 
 def _refuse_others_than_samples(file: RecordFile, table: Table) -> None:
-    """Refuse values among which stand their number, times or numbers of lines, or that touch."""
+    """Refuse values that include their number, times or line numbers, or that touch."""
     values, count, in_front = table.values, len(table.values) - 1, table.values[:2].tolist()
     counted = values[0] == count or (count - 1 in in_front and 0.0 < min(in_front) <= _LARGEST_STEP)
     numbered = table.width > 1 and len(table.rows) > 2 and _is_counting(table.rows[:, -1])
@@ -229,14 +229,14 @@ def _timed(
 def _units(
     file: RecordFile, table: Table, names: Sequence[ColumnName], others: Sequence[str]
 ) -> list[str | None]:
-    """Unit of each column of accelerations: its own, else that of the header or of the others."""
+    """Unit of each column of accelerations: its own, else that of the header or of the other columns."""
     own = [unit_of(name.unit) if name.unit else None for name in names]
     for name, unit in zip(names, own, strict=True):
         if name.unit and unit is None:
             raise ValueError(f"{file.name} is in {name.unit[:20]}, allowed are {ALLOWED_UNITS}")
     accelerates = any(own) or any(name.kind == "acceleration" for name in names)
     refuse_header(file, others, table.comments, accelerates=accelerates)
-    # a column in a unit of acceleration settles what the words of the header are about
+    # a column with a unit of acceleration decides the meaning of the words in the header
     stated = stated_unit(file.path, [*others, *(["acceleration"] if accelerates else [])])
     if stated is not None and any(unit not in (None, stated) for unit in own):
         raise ValueError(f"{file.name} states two units: {next(filter(None, own))} and {stated}")
@@ -245,7 +245,7 @@ def _units(
 
 
 def _rises_evenly(time: NDArray[np.float64]) -> bool:
-    """Whether numbers rise in even steps, as times do."""
+    """Whether numbers increase in even steps, as times do."""
     return len(time) > 1 and _uneven(time)[0] is None
 
 
@@ -260,9 +260,9 @@ def _uneven(time: NDArray[np.float64]) -> tuple[int | None, float]:
     step = 2.0 * float(0.5 * time[-1] - 0.5 * time[0]) / (len(time) - 1)
     if not 0.0 < step < np.inf:
         return 0, step
-    with np.errstate(over="ignore", invalid="ignore"):  # an infinite distance is refused like any other
+    with np.errstate(over="ignore", invalid="ignore"):  # an infinite distance is refused as any other
         off = np.abs((time - time[0]) / step - np.arange(len(time)))
-        # the place where the step changes, not the one where the error has grown largest
+        # the place where the step changes, not that of the largest accumulated error
         jump = np.abs(np.diff(time) / step - 1.0)
     even = off.max() <= _UNEVENNESS and jump.max() <= 2.0 * _UNEVENNESS
     return (None if even else int(jump.argmax())), step
