@@ -1,4 +1,4 @@
-"""Checks of a subject: a reduced model, an engine, somebody's model, or files of trajectories.
+"""Checks of a subject: a reduced model, an engine, another model, or files of trajectories.
 
 One list of physical checks, in groups, tightest first; every check has a measured value, a bound, and the
 reason of the bound. `rockwobble check` runs them, and `rockwobble.check` in Python.

@@ -1,4 +1,4 @@
-"""Agreement of a subject: with the independent model, and with the order of its method.
+"""Agreement of a subject with the independent model, and with the order of its method.
 
 An engine in a recess is compared with the recess model, one on flat ground with the flat-ground model. A
 recess with clearance has no model of its own: until the first touch of a wall it is flat ground. The error
@@ -41,7 +41,7 @@ from .measurement import (
 )
 from .subject import ENGINE_TOLERANCE, Subject, engine
 
-# a squat body with inertias of its own, on ground that accelerates evenly in three components
+# a squat body with given inertias, on ground that accelerates evenly in three components
 BODY = Cylinder(semidiagonal=3.0, tan_alpha=1.0, height=5.0, transverse_inertia=3.0, axial_inertia=1.6)
 GROUND = np.array([0.10, -0.06, 0.30]) * GRAVITY
 SHAKEN = Case(
@@ -52,8 +52,8 @@ SHAKEN = Case(
     friction=2.0,
     name="even acceleration in three components",
 )
-_SAMPLE = 0.00437  # [s] no multiple of a step, which is 7e-5 s: a sample off by half of one shows
-# unit of each field, and times the tolerance; rates and forces are differences of what is recorded
+_SAMPLE = 0.00437  # [s] no multiple of a step (7e-5 s): half a step of delay shows
+# unit of each field, and factor on the tolerance; rates and forces are differences of recorded values
 _FIELDS = {
     "tilt": ("rad", 1.0, 1.0),
     "tilt_rate": ("rad/s", 1.0, 3.0),
@@ -63,12 +63,12 @@ _FIELDS = {
     "centre_of_mass": ("R", BODY.semidiagonal, 1.0),
     "energy": ("g R", GRAVITY * BODY.semidiagonal, 1.0),
 }
-# the guide of a recess, which starts without twist, lets rate and force swing about their mean
+# the guide of a recess, without twist at the start, makes rate and force oscillate about their mean
 _GUIDED_SWINGS, _SWINGS = (200.0, 5e3), (5.0, 5.0)
 RAMP = Case(PIER, GroundMotion(np.outer([0.0, 1.5], [0.6, 0.8]) * THRESHOLD, 1.5), name="ramp")
 RECORD = Case(Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940(), duration=8.0, name="El Centro")
 _CONTACT = "contact at its step"
-_LEVEL = 1e-3  # tilt over alpha at which an uplift is seen
+_LEVEL = 1e-3  # tilt over alpha that counts as uplift
 _COPY = 1e-3  # relative change of record or release in the copy whose divergence ends a comparison
 
 
@@ -85,7 +85,7 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
     swings = _GUIDED_SWINGS if support_named(support).guided else _SWINGS
     rate, force = (subject.tolerance_bound(times, "means over 60 steps") for times in swings)
     yield at_most("rolling_rate", difference("rolling_rate"), rate)
-    # the half window at either end is left out
+    # without the half window at either end
     yield at_most("contact force", difference("contact_force", slice(2, -2)), force)
     if "energy_error" in subject.knows:
         work = -(found.centre_of_mass - found.centre_of_mass[0]) @ GROUND
@@ -100,7 +100,7 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def release(subject: Subject, support: str) -> Iterator[Result]:
-    """Tilt, peak and passes of a release that passes the upright position."""
+    """Tilt, peak and passes of a release with a near-upright pass."""
     found, model = _both(subject, RELEASE, support)
     yield _leans(subject, found, model, "tilt and azimuth of a release", 1.0, _CONTACT)
     bound = subject.tolerance_bound(10.0, "as the model", "s, rad")
@@ -129,19 +129,19 @@ def frame(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def tendon(subject: Subject, support: str) -> Iterator[Result]:
-    """Tilt of a release with a tendon: a spring between points, whose stretch follows from the tilt."""
+    """Tilt of a release with a tendon: a spring between points, whose elongation follows from the tilt."""
     both = _both(subject, dataclasses.replace(RELEASE, tendon=TENDON), support)
     yield _leans(subject, *both, "tilt and azimuth with a tendon", 1.0, _CONTACT)
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:
-    """Tilt after an uplift on a load that rises, as far as 1.5 times the load that lifts the pier."""
+    """Tilt after an uplift under a rising load, up to 1.5 times the uplift load of the pier."""
     both = _both(subject, RAMP, support, 0.05)
     yield _leans(subject, *both, "tilt and azimuth after an uplift", 5.0, "the base tips at the threshold")
 
 
 def record(subject: Subject, support: str) -> Iterator[Result]:
-    """Tilt and azimuth under El Centro, of a case that reveals an error of 0.1 % in the size."""
+    """Tilt and azimuth under El Centro, of a case sensitive to an error of 0.1 % in the size."""
     both = _both(subject, RECORD, support)
     times = 1.0 if subject.run is None else 10.0  # an engine errs at uplift, and passes magnify that
     reason = "its accuracy, and what passes make of it"
@@ -149,7 +149,7 @@ def record(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def ring(subject: Subject, support: str) -> Iterator[Result]:
-    """A recess with clearance: flat ground until a wall is touched; the walls keep it in its place."""
+    """Recess with clearance: flat ground until contact with a wall; the walls bound the displacement."""
     case = release_case(0.5, 0.5, 4.0, SQUAT)
     found, flat = (subject.simulate(case, each) for each in (support, FLAT))
     before = found.time < found.first("wall_contact")
@@ -182,20 +182,20 @@ def trajectory(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def walls(name: str, case: Case, trace: Trace) -> Iterator[Result]:
-    """Energy that walls take, and the place in which they keep the cylinder."""
+    """Energy lost at walls, and the displacement that they allow."""
     touched = trace.first("wall_contact")
     note = f"first touch at {touched:.3g} s" if math.isfinite(touched) else "no wall was touched"
     loss = Bound(0.3, "walls that only keep the cylinder in place; 0.09 was measured")
     part = "inclination, friction or clearance of the walls"
     yield at_most(f"{name}: share of the energy lost", abs(energy_loss(trace, case.motion)), loss, part, note)
     moved = trace.residual_displacement / case.cylinder.base_radius
-    # the wall stands back by a thousandth, and leans
+    # the wall has a clearance of a thousandth, and an inclination
     clearance = Bound(0.05, "clearance of the walls, and 1 - cos of the tilt at the end", "b")
     yield at_most(f"{name}: base centre away from its place", moved, clearance, "the walls let it out", note)
 
 
 def _both(subject: Subject, case: Case, support: str, sample_step: float = 0.01) -> tuple[Trace, Trace]:
-    """Return the motion and that of the independent model; raise where it failed, which says why."""
+    """Motion of the subject and of the independent model; a failed motion raises its reason."""
     assert subject.reference is not None
     found = subject.simulate(case, support, sample_step=sample_step)
     if found.outcome == "failed":
@@ -214,14 +214,14 @@ def _leans(
 
 
 def _agreement(subject: Subject, case: Case, support: str, model: Trace) -> float:
-    """Return until when a copy that is off by 0.1 % stays within 1 % of alpha [s]."""
+    """Time up to which a copy perturbed by 0.1 % stays within 1 % of alpha [s]."""
     assert subject.reference is not None
     other = dataclasses.replace(perturbed_in_strength(case, _COPY), duration=case.length)
     return agreement_of(model, subject.reference(other, support=support, rtol=1e-11)).end
 
 
-# of the check of the order, in multiples of the default: in single precision rounding is more than what the
-# finest steps leave, and the order shows at coarse ones
+# steps of the check of the order, over the default: in single precision rounding exceeds the error at the
+# finest steps, and the order shows at coarse ones
 _STEPS, _COARSE_STEPS = (4.0, 2.0, 1.0), (10.0, 7.0, 4.0)
 LOW_RELEASE = release_case(0.5, 0.5, 2.0, SQUAT, "release, tan alpha = 1")
 

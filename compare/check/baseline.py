@@ -1,4 +1,4 @@
-"""Baselines and certificates: fingerprints that the package keeps, and those that somebody takes along.
+"""Baselines and certificates: fingerprints stored with the package, and those stored by a user.
 
 A baseline was looked at once and is kept in the folder `baselines`, with the reason for each change, the last
 one last, and the versions that each was made with: one for the reduced models, one for each engine. Results
@@ -47,13 +47,13 @@ from .verdict import (
     compare_entries,
 )
 
-_LONGEST = 4.0  # [s] cases of an engine, whose steps take time
+_LONGEST = 4.0  # [s] longest case of an engine, whose steps are slow
 _BOUND = Bound(1.0, "ten times its tolerance and what copies differ by", "of what is allowed")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Baseline:
-    """The baseline of a subject.
+    """Stored fingerprint of a subject, with versions, date and reason.
 
     Parameters
     ----------
@@ -68,23 +68,23 @@ class Baseline:
 
     @property
     def version(self) -> str:
-        """The version of the engine that made it; empty for the reduced models and for an empty baseline."""
+        """Version of the engine at the time of the baseline; empty for the reduced models."""
         return str(self.reasons[-1]["version"]) if self.reasons else ""
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """The versions of the packages that it was made with."""
+        """Versions of the packages at the time of the baseline."""
         return self.reasons[-1]["versions"] if self.reasons else {}
 
 
 def baseline_path(subject: Subject) -> Path:
-    """Return the file of the baseline of a subject."""
+    """Path of the baseline of a subject."""
     name = f"{subject.label.replace(' ', '_')}.json"
     return Path(str(files("rockwobble.compare.check"))) / "baselines" / name
 
 
 def read_baseline(subject: Subject) -> Baseline:
-    """Return the stored baseline of a subject; an empty one where there is none."""
+    """Stored baseline of a subject; an empty one where there is none."""
     path = baseline_path(subject)
     if not path.exists():
         return Baseline()
@@ -93,7 +93,7 @@ def read_baseline(subject: Subject) -> Baseline:
 
 
 def new_fingerprint(subject: Subject, progress: ProgressCallback | None = None) -> tuple[Entry, ...]:
-    """Return the new fingerprint of a subject, as a baseline stores it."""
+    """New fingerprint of a subject, in the form of a baseline."""
     longest = math.inf if subject.run is None else _LONGEST
     return tuple(fingerprint(subject, progress, longest=longest))
 
@@ -137,7 +137,7 @@ def baseline_changes(old: Baseline, new: tuple[Entry, ...], subject: Subject) ->
 def updated_baseline(
     old: Baseline, new: tuple[Entry, ...], subject: Subject, *, reason: str, date: str
 ) -> str:
-    """Return the text of the file with a new fingerprint, and the reason kept.
+    """Text of the file with a new fingerprint, and the reason for it.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def _version(subject: Subject) -> str:
 
 
 def _share(verdict: FingerprintVerdict, old: Entry, new: Sample) -> float:
-    """Return the difference of a case over the allowed one; NaN where a quantity is in one of both only."""
+    """Difference of a case over the allowed one; NaN where a quantity is in only one of both."""
     if verdict.word != SAME:
         return verdict.difference / verdict.allowed
     wanted, got = (np.array(list(each["signals"].values()), dtype=np.float64) for each in (old, new))
@@ -164,9 +164,9 @@ def _share(verdict: FingerprintVerdict, old: Entry, new: Sample) -> float:
 
 
 _RTOL = 1e-8  # the default of `reduced.simulate`
-# groups of checks that say nothing of the motion, but of a protocol or of a baseline
+# groups of checks of a protocol or of a baseline, not of the motion
 NOT_CLAIMING = ("protocol", "baseline")
-_BETWEEN = "agreement"  # compares two independent formulations
+_BETWEEN = "agreement"  # group that compares two independent formulations
 NOT_COVERED = (
     "no claim is validated: no experiment was compared",
     "ground that deforms, or is not plane; a base that is not rigid",
@@ -178,7 +178,7 @@ NOT_COVERED = (
 def certify(
     subject: Subject, results: Iterable[Result], progress: ProgressCallback | None = None
 ) -> Certificate:
-    """Make a certificate.
+    """Certificate of a subject.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def certify(
 
 
 def subject_of(certificate: Certificate) -> Subject:
-    """Return the subject that a certificate is of, as it is installed here.
+    """Subject of a certificate, as installed here.
 
     Raises
     ------
@@ -229,14 +229,14 @@ def subject_of(certificate: Certificate) -> Subject:
 
 
 def models(module: ModuleType = reduced) -> Subject:
-    """Return the reduced models at their default tolerance; of a copy of the package, for its tests."""
+    """Reduced models at their default tolerance; also from a copy of the package, for its tests."""
     return reduced_model(module, rtol=_RTOL)
 
 
 def verify(
     certificate: Certificate, subject: Subject | None = None, progress: ProgressCallback | None = None
 ) -> FingerprintVerdict:
-    """Compute the fingerprint here, up to the first change, and return the verdict.
+    """Verdict on the fingerprint computed here, up to the first change.
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ def verify(
 
 
 def certificate_findings(certificate: Certificate, verdict: FingerprintVerdict) -> Findings:
-    """The verdict on a certificate, and the versions that are others than those it was made with."""
+    """Verdict on a certificate, and the versions that differ from those in it."""
     values: dict[str, Value] = {
         "name": verdict.case,
         "name_quantity": verdict.quantity,
@@ -285,12 +285,12 @@ def certificate_findings(certificate: Certificate, verdict: FingerprintVerdict) 
 
 
 def write_certificate(certificate: Mapping[str, object], path: Path) -> None:
-    """Write a certificate, perhaps with more, whole or not at all; a claim is a line."""
+    """Write a certificate, whole or not at all; each claim is a line."""
     replace_files(path.parent, {path.name: as_json(certificate).encode()})
 
 
 def claims_of(results: Iterable[Result]) -> tuple[list[dict[str, object]], list[str]]:
-    """Return the claims that results bear out, and what they do not cover.
+    """Claims supported by results, and the motions that they do not cover.
 
     A claim is verified, against exact solutions, or cross-validated, between independent formulations; none
     is validated, against an experiment.

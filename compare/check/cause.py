@@ -1,4 +1,4 @@
-"""Likely cause of a subject that fails: the one change of a problem by which the model does what it does.
+"""Likely cause of a failed subject: the one change of a problem with which the model reproduces its motions.
 
 Each candidate scales one number that somebody may have wrong. The scale that fits best is found in a release
 and in a ramp of the ground together, since some cannot be told apart by one of them: gravity and size both
@@ -20,18 +20,18 @@ from .lagrange import shape_of
 from .measurement import lean_difference
 from .subject import Subject
 
-_WIDEST = 0.3  # logarithm of a scale
+_WIDEST = 0.3  # largest logarithm of a scale
 _EXPLAINED = 0.1  # largest share of the difference that an accepted cause may leave
-# times as much as the best leaves, or so much of the difference: cannot be told from it
+# ratio to the best remainder, or share of the difference, within which a cause is as likely as the best
 _ALIKE, _SAME = 3.0, 0.01
-_LEAST = 0.05  # share of the tolerance of a subject: a smaller difference may be its method's
+_LEAST = 0.05  # share of the tolerance of a subject: a smaller difference may be due to its method
 _RTOL = 1e-10
 _LARGEST_LOSS = 0.2  # largest rolling resistance, over the base radius
 Change = Callable[[Case, float], Case]
 
 
 def _of_body(name: str) -> Change:
-    """Return the change that scales a field of the body."""
+    """Change that scales a field of the body."""
 
     def change(case: Case, scale: float) -> Case:
         body, shape = case.cylinder, shape_of(case.cylinder)
@@ -61,7 +61,7 @@ CANDIDATES: Mapping[str, Change] = {
 
 
 def likely_cause(subject: Subject, support: str, cases: Sequence[Case]) -> str:
-    """Return the number that is likely wrong, and by how much, in words; empty where none explains it.
+    """Number that is likely wrong, and its error, in words; empty where none explains the difference.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def likely_cause(subject: Subject, support: str, cases: Sequence[Case]) -> str:
 
 
 def _lowest(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
-    """Return place and value of the minimum of a function: on a grid, then about its best point."""
+    """Place and value of the minimum of a function: on a grid, then about its best point."""
     from scipy.optimize import minimize_scalar
 
     grid = np.linspace(low, high, 13)
@@ -114,7 +114,7 @@ def _lowest(function: Callable[[float], float], low: float, high: float) -> tupl
 
 
 def _difference(found: Sequence[Trace], models: Sequence[Trace], *, clock: float = 1.0) -> float:
-    """Return the root mean square difference of the leans of all cases, over sin(alpha)."""
+    """Root mean square difference of the tilt vectors of all cases, over sin(alpha)."""
     parts = [
         lean_difference(one, other, other.case.length, clock=clock)
         for one, other in zip(found, models, strict=True)

@@ -1,4 +1,4 @@
-"""Fingerprint of a subject: short motions, how exactly they repeat, and how long they can agree.
+"""Fingerprint of a subject: short motions, the repeatability of their numbers, and their agreement times.
 
 Two installations of one subject differ by rounding, and two versions of an engine by a little more. What that
 becomes in time is told by copies of a case whose start or record is off by the tolerance of the subject: a
@@ -40,10 +40,10 @@ from .subject import SLAB, UPLIFT, Subject
 from .verdict import SAME, Entry, Sample, compare_entries
 
 Array = NDArray[np.float64]
-_SAMPLES = 40  # samples kept of each motion
-_BEYOND = 10.0  # a difference counts if it exceeds that of the copies by this factor
+_SAMPLES = 40  # samples stored of each motion
+_BEYOND = 10.0  # ratio to the difference of the copies above which a difference counts
 _MEMBERS = 16
-_REPEATS = 10.0  # times the tolerance of a subject: how closely a number repeats
+_REPEATS = 10.0  # ratio of the repeatability of a number to the tolerance of a subject
 _SLENDER = Cylinder(semidiagonal=1.0, tan_alpha=0.2)
 _LOW = Cylinder(semidiagonal=1.0, tan_alpha=1.0)
 _HOLLOW = Cylinder(semidiagonal=4.0, tan_alpha=0.35, transverse_inertia=7.0, axial_inertia=3.0)
@@ -76,13 +76,13 @@ class ShortCase:
 
 
 def short_cases() -> tuple[ShortCase, ...]:
-    """Return the cases, the simplest first."""
+    """Cases of a fingerprint, the simplest first."""
     # strong and long enough that a slab 1 % heavier exceeds the repeatability of an engine
     pushes = [[0.0, 0.0, 0.0], [2.6, 0.6, -1.2], [1.2, 2.2, 1.2]]
     tied = [[0.0, 0.0, 0.0], [2.6, 1.4, -1.2], [1.2, 2.2, 1.2]]
     flat = "twist of the flat-ground model, N1, and terms in the radius b"
     tendon = Tendon(prestress=0.3, stiffness=2.0)
-    # small and long, so that in an engine its impacts turn rounding into another motion
+    # small and long, so that in an engine the impacts amplify rounding to another motion
     planar = Case(_SLENDER, initial=InitialState(0.5 * _SLENDER.alpha, 0.0, 0.3), duration=12.0)
     return (
         _release("tilting", "restoring moment p^2 sin(alpha - theta)", PIER, 0.0, 1.0),
@@ -123,7 +123,7 @@ def short_cases() -> tuple[ShortCase, ...]:
 
 
 def cases_of(subject: Subject, longest: float = math.inf) -> list[ShortCase]:
-    """Return the cases that a subject can run, up to a length [s]."""
+    """Cases that a subject can run, up to a length [s]."""
     return [
         short
         for short in short_cases()
@@ -161,7 +161,7 @@ def _shaken(
 
 
 def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
-    """Return a case under El Centro, scaled to a multiple of the uplift intensity of the pier."""
+    """Case under El Centro, scaled to a multiple of the uplift intensity of the pier."""
     record = el_centro_1940()
     motion = record.scaled(strength * GRAVITY * PIER.tan_alpha / record.peak)
     case = Case(PIER, motion, duration=length)
@@ -171,7 +171,7 @@ def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
 def fingerprint(
     subject: Subject, progress: ProgressCallback | None = None, *, longest: float = math.inf
 ) -> Iterator[Entry]:
-    """Yield the entries of the cases that a subject can run, each when it is computed."""
+    """Entries of the cases that a subject can run, each when it is computed."""
     shorts = cases_of(subject, longest)
     stage = stages(progress, [short.case.length for short in shorts])
     for short in shorts:
@@ -181,7 +181,7 @@ def fingerprint(
 
 
 def entry_of(short: ShortCase, subject: Subject) -> Entry:
-    """Return the entry of a case."""
+    """Entry of a case."""
     trace = _run(subject, short, short.case)
     sample, values, share = entry(short, trace), _signals(trace), subject.tolerance
     pairs = (1.0 + share, 1.0 + share), (1.0 - share, 1.0 + 0.5 * share)
@@ -189,7 +189,7 @@ def entry_of(short: ShortCase, subject: Subject) -> Entry:
     spread = _BEYOND * np.array([_difference(copy, values) for copy in copies]).max(axis=0)
     lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
     allowed = _REPEATS * share * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
-    if len(lost):  # copies are no measure from there on
+    if len(lost):  # the copies are no measure from there on
         allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
     whole: Entry = {
         **sample,
@@ -222,7 +222,7 @@ def _run(subject: Subject, short: ShortCase, case: Case) -> Trace:
 
 
 def entry(short: ShortCase, trace: Trace) -> Sample:
-    """Return the samples and the events of one case."""
+    """Samples and events of one case."""
     values = _signals(trace)
     return {
         "name": short.name,
@@ -232,7 +232,7 @@ def entry(short: ShortCase, trace: Trace) -> Sample:
         "outcome": trace.outcome,
         "uplift_time": _finite_or_none(trace.uplift_time),
         "uplift_direction": _finite_or_none(trace.uplift_direction),
-        # as the signals, of the run alone
+        # samples of the run alone, as those of the signals
         "peak_tilt": _finite_or_none(trace.peak_within_run / short.case.cylinder.alpha),
         "time": _round(trace.time),
         "signals": {name: _finite_list(values[:, k]) for k, name in enumerate(SIGNALS)},
@@ -240,7 +240,7 @@ def entry(short: ShortCase, trace: Trace) -> Sample:
 
 
 def copied_tilts(short: ShortCase, subject: Subject) -> list[list[float | None]]:
-    """Return the tilts of many copies, over alpha."""
+    """Tilts of many copies, over alpha."""
     random, share, entries = Random(1940), _BEYOND * subject.tolerance, []
     for _ in range(_MEMBERS):
         copy = perturbed(short.case, *(1.0 + share * random.gauss(0, 1) for _ in range(2)))
@@ -249,7 +249,7 @@ def copied_tilts(short: ShortCase, subject: Subject) -> list[list[float | None]]
 
 
 def _signals(trace: Trace) -> Array:
-    """Return the signals (n, 9): over alpha, sin(alpha), g R, weights and b."""
+    """Signals (n, 9): over alpha, sin(alpha), g R, weights and b."""
     body = trace.case.cylinder
     lean = np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle)) / math.sin(body.alpha)
     return np.column_stack(
@@ -266,11 +266,11 @@ def _signals(trace: Trace) -> Array:
 
 
 def _difference(copy: Array, values: Array) -> Array:
-    """Return the difference (n, 9), of a copy that ended earlier as far as it goes."""
+    """Difference (n, 9), up to the end of the shorter motion."""
     apart = np.zeros_like(values)
     count = min(len(copy), len(values))
     apart[:count] = np.nan_to_num(np.abs(copy[:count] - values[:count]))
-    running = np.maximum.accumulate(apart, axis=0)  # a difference that is zero by chance says nothing
+    running = np.maximum.accumulate(apart, axis=0)  # a difference that is zero by chance has no meaning
     return np.asarray(running, dtype=np.float64)
 
 
@@ -287,7 +287,7 @@ def _round(values: Array, digits: int = 12) -> list[float]:
 
 
 def as_json(content: Mapping[str, object]) -> str:
-    """Return a certificate or a baseline as the text of its file: a claim or a case is a line."""
+    """Text of the file of a certificate or a baseline: each claim or case is a line."""
     parts = []
     for name, part in content.items():
         text = json.dumps(part)

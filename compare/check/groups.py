@@ -1,4 +1,4 @@
-"""`rockwobble.check`: the physical checks in groups, and the subjects that they are run on.
+"""`rockwobble.check`: the physical checks in groups, and their subjects.
 
 What comes later in the list rests on what comes earlier.
 """
@@ -44,7 +44,7 @@ ENDS = Bound(0.0, "a check must reach its end")
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One check, and the subjects that it is for.
+    """One check, and the kinds of subjects to which it applies.
 
     Parameters
     ----------
@@ -64,12 +64,12 @@ class Check:
     needs: tuple[str, ...] = ()
 
     def applies(self, subject: Subject) -> bool:
-        """Return whether the check applies to a subject."""
+        """Whether the check applies to a subject."""
         files = FILES in subject.features
         return subject.features.issuperset(self.needs) and (FILES in self.needs) == files
 
     def run(self, subject: Subject) -> Iterator[Result]:
-        """Yield its results, the name of each with its support; an exception is a result, too."""
+        """Results of the check, named with its support; an exception becomes a failed result."""
         name = self.measure.__name__.replace("_", " ")
         if lacks := [field for field in self.knows if field not in subject.knows]:
             yield not_run(name, f"{subject.label} does not return {', '.join(lacks)}")
@@ -79,13 +79,13 @@ class Check:
             try:
                 for result in self.measure(subject, support):
                     yield dataclasses.replace(result, name=f"{result.name}, {support}")
-            except Exception as error:  # whatever a model or engine raises is said in its place
+            except Exception as error:  # the exception of a model or engine becomes its result
                 words = f"{type(error).__name__}: {' '.join(str(error).split())}"
                 if subject.features & {
                     "rtol",
                     "stepper",
                     FILES,
-                }:  # a reduced model or a file read here must not fail
+                }:  # codes of failures, which a reduced model or a trajectory read here must not have
                     yield at_most(f"{name}, {support}", math.nan, ENDS, note=words)
                 else:
                     yield not_run(f"{name}, {support}", words)
@@ -155,8 +155,8 @@ GROUPS: Mapping[str, tuple[Check, ...]] = {
 }
 # groups whose results become the claims of a certificate
 CLAIMING = tuple(group for group in GROUPS if group not in baseline.NOT_CLAIMING)
-# an engine that nobody has named is checked for what a new version may change: whether it follows the model,
-# which the checks before hold to the laws, and whether short motions are those of its baseline
+# default checks of an engine, which cover the effects of a new version: agreement with the model, itself
+# checked against the laws, and short motions equal to those of the baseline
 _OF_ENGINES = {
     "agreement": tuple(
         each
@@ -165,7 +165,7 @@ _OF_ENGINES = {
     ),
     "baseline": GROUPS["baseline"],
 }
-# an engine that is an extra is checked in every field, on its first support
+# an extra engine is checked in every field, on its first support only
 _OF_EXTRAS = {"agreement": (dataclasses.replace(GROUPS["agreement"][0], supports=()),)}
 TITLES = {
     "equations": "equations of motion",
@@ -182,13 +182,13 @@ TITLES = {
 }
 
 
-Part = tuple[Subject, str, Check]  # a check of a subject, and its group
+Part = tuple[Subject, str, Check]  # subject, its group, and a check
 
 
 def run_checks(
     subject: Subject, groups: Sequence[str] | None = None, *, progress: ProgressCallback | None = None
 ) -> Iterator[Result]:
-    """Yield the results of the groups, in their order, as they are made.
+    """Results of the groups, in their order, as they are computed.
 
     An exception in a check is a failure of that check, or, of somebody's model, one that could not run: the
     checks after it still run.
@@ -224,7 +224,7 @@ def run_checks(
 
 
 def _parts(subject: Subject, group: str, checks: Mapping[str, tuple[Check, ...]]) -> list[Part]:
-    """Return the checks of a group that apply to a subject."""
+    """Checks of a group that apply to a subject."""
     return [(subject, group, each) for each in checks.get(group, ()) if each.applies(subject)]
 
 
@@ -250,7 +250,7 @@ class Checks(Results, kind="check"):
 
     @classmethod
     def of(cls, results: Sequence[Result], *, seconds: float) -> Self:
-        """Return the checks with these results.
+        """Checks with these results.
 
         Parameters
         ----------
@@ -268,7 +268,7 @@ class Checks(Results, kind="check"):
 
     @cached_property
     def results(self) -> list[Result]:
-        """The results in the order in which they were made."""
+        """Results in the order of the checks."""
         return [
             Result(**{str(name): value for name, value in row.items()})
             for row in self.tables["results"].to_dict("records")
@@ -276,7 +276,7 @@ class Checks(Results, kind="check"):
 
     @property
     def failures(self) -> list[Result]:
-        """The results of the checks that failed."""
+        """Results of the failed checks."""
         return [result for result in self.results if result.failed]
 
     @property
@@ -285,7 +285,7 @@ class Checks(Results, kind="check"):
         return not self.failures
 
     def headline(self) -> Mapping[str, int]:
-        """Return the number of checks by their outcome."""
+        """Number of checks by their outcome."""
         counts = Counter(each.outcome for each in self.results)
         return {name: counts[name] for name in ("FAILED", "passed", "no baseline", "not run")}
 
@@ -327,7 +327,7 @@ def check(
     progress: ProgressCallback | None = None,
     **settings: object,
 ) -> Checks:
-    """Check a reduced model, an engine, somebody's model or a trajectory by physics.
+    """Check a reduced model, an engine, another model or a trajectory by physics.
 
     Parameters
     ----------
@@ -395,7 +395,7 @@ def check(
         results = [not_run("all other checks", "one motion does not tell: give a model that can be called")]
     else:
         chosen = baseline_subjects()
-        # an extra that is not installed is nobody's loss, one that does not load is
+        # an extra that is not installed is skipped, one that does not load fails
         asked = [name for name in engine_packages() if name in (*standard_engines(), *available_engines())]
         faults = {name: engine_fault(name) for name in asked}
         results = [not_run(f"checks of {name}", fault) for name, fault in faults.items() if fault]
@@ -429,18 +429,18 @@ def with_cause(subject: Subject, results: Sequence[Result]) -> list[Result]:
     cases = [RELEASE, agreement.LOW_RELEASE, *([agreement.RAMP] if UPLIFT in subject.features else [])]
     try:
         cause = likely_cause(subject, support, cases)
-    except Exception:  # whatever a model raises is said by its checks
+    except Exception:  # exceptions of a model are the results of its checks
         cause = ""
     return [dataclasses.replace(each, cause=cause) if lacks(each) else each for each in results]
 
 
 def baseline_subjects() -> list[Subject]:
-    """Return the subjects whose numbers are kept: the reduced models, and our engines installed here."""
+    """Subjects with stored baselines: the reduced models, and our engines installed here."""
     return [subjects.reduced_model(), *(subjects.engine(name) for name in own_engines())]
 
 
 def _of_suite(runs: SuiteRuns, suite: Suite) -> Iterator[Result]:
-    """Yield the results of each run of each case of a suite."""
+    """Results of each run of each case of a suite."""
     chosen, _ = runs_here(suite.runs or default_runs(cases=suite.cases))
     for case in suite.cases:
         for run in chosen:

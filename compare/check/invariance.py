@@ -51,12 +51,12 @@ from .measurement import (
 from .subject import UPLIFT, Subject
 
 Lean = NDArray[np.complex128]
-# a pulse in both components, weak enough not to overturn the pier, which it meets as it rocks
+# a pulse in both components, too weak to overturn the pier, which is rocking when it begins
 _PULSE = GroundMotion([[0.5, -0.3], [1.5, 0.4], [-1.0, 0.8], [0.3, -1.2], [0.0, 0.0]], 0.3)
 ROCKING = Case(
     PIER, _PULSE, initial=InitialState(0.5 * PIER.alpha, 0.0, 0.3, 0.5), duration=1.3, name="rocking"
 )
-# the vertical component is left out: only some models have it
+# without the vertical component, which only some models have
 STANDING = Case(PIER, polyline(SHOCK_TIMES, SHOCK[:, :2], 0.5), duration=4.0, name="from rest")
 _SAMPLE = 0.05  # [s]
 _TURN = 1.234  # [rad]
@@ -64,7 +64,7 @@ _TURNED = np.exp(1j * _TURN)
 
 
 def frame(subject: Subject, support: str) -> Iterator[Result]:
-    """The rotated problem has the rotated motion, the mirror image the mirror image."""
+    """A rotated problem has the rotated motion, and its mirror image the mirrored motion."""
     for case in _cases(subject):
         motion, start = _motion(case), case.initial
         turned = mirrored = None
@@ -91,7 +91,7 @@ def scale(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def statement(subject: Subject, support: str) -> Iterator[Result]:
-    """The same function of time, sampled finer, or with still ground after it."""
+    """Invariance under a finer sampling of the ground motion, or still ground after it."""
     for case in _cases(subject):
         motion = _motion(case)
         still = GroundMotion(np.vstack([motion.acceleration, np.zeros((3, 2))]), motion.time_step)
@@ -103,7 +103,7 @@ def statement(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def _cases(subject: Subject) -> tuple[Case, ...]:
-    # the base of an engine tips on its corners, which no rotation leaves as they are
+    # the base of an engine tips on its corners, which a rotation moves
     return (ROCKING,) if "stepper" in subject.features else (ROCKING, STANDING)
 
 
@@ -115,7 +115,7 @@ def _motion(case: Case) -> GroundMotion:
 def _slow_copy(
     case: Case, slower: float, force: float = 1.0, *, cylinder: RockingBody = PIER, gravity: float = GRAVITY
 ) -> Case:
-    """Return a case whose time runs slower, under accelerations that are `force` times as large."""
+    """Case in slower time, under accelerations `force` times as large."""
     motion, start = _motion(case), case.initial
     if start is not None:
         start = dataclasses.replace(start, rolling_rate=start.rolling_rate / slower)
@@ -139,7 +139,7 @@ def _same(
     slower: float = 1.0,
     expected: Callable[[Lean], Lean] = lambda lean: lean,
 ) -> Result:
-    """Compare a case with the same motion stated in another way, `slower` and leaning as `expected`."""
+    """Compare a case with its motion in another statement, `slower` and with tilt vectors as `expected`."""
     plain = subject.simulate(case, support, sample_step=_SAMPLE)
     trace = subject.simulate(other, support, sample_step=slower * _SAMPLE)
     moved = float(np.ptp(plain.tilt)) > 0.05 * PIER.alpha
@@ -150,7 +150,7 @@ def _same(
 
 
 def _on(time: NDArray[np.float64], own: NDArray[np.float64], values: Lean) -> Lean:
-    """Return values at other times: a model of somebody else samples as it likes."""
+    """Values interpolated at other times: an external model chooses its samples."""
     if len(own) == len(time) and np.allclose(own, time, rtol=0.0, atol=1e-9):
         return values
     from scipy.interpolate import CubicSpline
@@ -162,7 +162,7 @@ _ALL = Bound(0.0, "the protocol of an engine")
 _CHUNKS = Bound(1e-9, "what is carried from one call to the next, and no more", "m")
 _START = Bound(1e-6, "of rates: a central difference over two steps")
 _FREE_FALL = Bound(2.0, "no acceleration of the mass centre is larger", "g")
-# below the energy at balance, or the run would go on until it turns back
+# below the energy at balance, so that the run ends before its next maximum
 _STATE = InitialState(0.12, tilt_rate=0.05, rolling_angle=-2.0, rolling_rate=0.5)
 _FIELDS = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass")
 _QUIET = """import json, sys, rockwobble as rw
@@ -195,7 +195,7 @@ def description(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def stepping(subject: Subject, support: str) -> Iterator[Result]:
-    """Steps do not depend on how many one call takes, nor on another open scene."""
+    """Poses are independent of the number of steps in a call, and of another open scene."""
     backend, scene, given = _open_stepper(subject, support)
     settings, still = backend.settings(given, scene), np.zeros((60, 3))
     with backend.open(scene, settings) as whole, backend.open(scene, settings) as separated:
@@ -230,7 +230,7 @@ def time_grid(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def repetition(subject: Subject, support: str) -> Iterator[Result]:
-    """The same run gives the same bits, prints nothing and writes nothing where the user works."""
+    """Repeated runs give the same bits, print nothing and write nothing to the working folder."""
     assert subject.run is not None
     run = Run(subject.label, support, subject.run.time_step, **subject.run.settings)
     first, second = (simulate_run(ROCKING, run).tilt for _ in range(2))
@@ -257,7 +257,7 @@ def _holds(name: str, right: bool, note: str) -> Result:
 
 
 def _open_stepper(subject: Subject, support: str) -> tuple[Engine, Scene, Settings]:
-    """Return the engine, the release as its stepper meets it, and the settings that were given."""
+    """Engine, release in the scene of its stepper, and settings as given."""
     assert subject.run is not None
     unit = froude_scale(PIER.semidiagonal, REFERENCE_GRAVITY)
     body = scaled_body(PIER, unit.length)

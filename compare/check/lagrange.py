@@ -1,4 +1,4 @@
-"""Lagrange's equations from the energies alone, the residual of a motion in them, and what it conserves.
+"""Lagrange's equations from the energies alone, their residual, and conserved quantities of a motion.
 
 Nothing here is shared with `rockwobble.reduced`, and no equation of motion is written down. The
 positions (8), (10) and the rotation (5), (6) with psi = -phi give the velocities; those give the
@@ -55,9 +55,9 @@ from .subject import Subject
 
 Array = NDArray[Any]  # float, or complex within a complex step
 
-REACH = 6  # samples on either side of a difference: order 12, which leaves (step/time scale)^12
-_STEP = 1e-100  # complex step: no difference is taken, so none is too small
-_ALONG = 1e-2  # [s] of the steps along a motion, where sines and cosines are all that changes
+REACH = 6  # samples on either side of a difference: order 12, with an error of (step/time scale)^12
+_STEP = 1e-100  # complex step: no difference of close numbers, so a step this small has no rounding
+_ALONG = 1e-2  # [s] of the steps along a motion, over which only sines and cosines change
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +74,7 @@ class Shape:
 
 
 def shape_of(cylinder: RockingBody, tendon: Tendon | None = None) -> Shape:
-    """Return the constants of a cylinder, homogeneous where it has no inertias of its own: (16)."""
+    """Constants of a cylinder, homogeneous unless inertias are given: (16)."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     I1, I2 = cylinder.transverse_inertia, cylinder.axial_inertia
     height = 2.0 * cylinder.half_height
@@ -198,7 +198,7 @@ def residuals(
     `place`, `rates` and `curves` are tilt and rolling angle (n,), their rates and their second derivatives;
     `ground` (n, 3) is the acceleration of the ground.
     """
-    # the momenta along the parabola that has this place, these rates and these curves
+    # momenta along the parabola with this position, these rates and these second derivatives
     time = (np.arange(2 * REACH + 1) - REACH)[:, None] * _ALONG
     tilt, turn = (x + v * time + 0.5 * w * time**2 for x, v, w in zip(place, rates, curves, strict=True))
     tilt_rate, turn_rate = (v + w * time for v, w in zip(rates, curves, strict=True))
@@ -236,7 +236,7 @@ def _shift(values: Array, by: int) -> Array:
 
 
 def slope(function: Callable[[Array], Array], at: float) -> float:
-    """Return the derivative of a function of one angle, by a complex step."""
+    """Derivative of a function of one angle, by a complex step."""
     return float(function(np.array([at + 1j * _STEP])).imag[0] / _STEP)
 
 
@@ -244,7 +244,7 @@ def _matrix(rows: list[list[Array]]) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-# a slender pier, a drum as wide as high, a squat body with mass and inertias of its own, and a frame
+# a slender pier, a drum as wide as high, a squat body with given mass centre and inertias, and a frame
 CYLINDERS = {
     "R = 6 m, tan alpha = 0.2": PIER,
     "R = 2.5 m, tan alpha = 1": Cylinder(semidiagonal=2.5, tan_alpha=1.0),
@@ -254,18 +254,18 @@ CYLINDERS = {
     "frame, tan alpha = 0.3": WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.3), 1.5),
 }
 TENDON = Tendon(prestress=0.4, stiffness=2.0)
-# terms of a case, each with a size with which a motion is as slow as without, see _SAMPLE
+# terms of a case, each small enough that the motion is no faster than without, see _SAMPLE
 _TERMS: Mapping[str, Mapping[str, Any]] = {
     "": {},
     ", with a tendon": {"tendon": Tendon(prestress=0.1, stiffness=0.5)},
 }
 # step in units of 1/p: the fastest of these motions changes in about 1/(3 p), and 0.06^12 is below rounding
 _SAMPLE = 0.02
-_PIECE = 16  # samples of the run in one of the record
+_PIECE = 16  # samples of the run per sample of the record
 _PIECES = 3
 RUNS = 9
 _SEED = 18  # seed of the random states (arbitrary)
-# 1e-16/0.02^2 of the angles, 1e-11 of p^2 at the worst, and what rtol 1e-13 leaves in a dozen steps
+# 1e-16/0.02^2 of the angles, 1e-11 of p^2 at most, and the error of rtol 1e-13 over a dozen steps
 _REASON = "differences of positions that are known to rounding"
 NAMES = (
     "equation of motion of the tilt",
@@ -311,7 +311,7 @@ def _residuals(
         )
         if trace.outcome == "failed":
             raise RuntimeError(f"a short motion failed: {why(trace)}")
-        # one that fell down ends between two samples, and may go on falling when the motion is over
+        # a fall ends between two samples, and may continue after the end of the case
         even = len(trace.time) - (trace.outcome == "overturned")
         for piece in range(min((even - 1) // _PIECE, _PIECES)):
             cut = slice(piece * _PIECE, (piece + 1) * _PIECE + 1)
@@ -324,7 +324,7 @@ def _residuals(
             ground: Array = ((1.0 - share) * before + share * after)[inner]
             place = angles[0][inner], angles[1][inner]
             by_tilt, by_turn = residuals(shape, place, (rates[0], rates[1]), (curves[0], curves[1]), ground)
-            # a slab goes twice as far, and the base carries both
+            # a slab moves twice as far, and the base carries both
             carried = (1.0 + 2.0 * shape.slab) / (1.0 + shape.slab)
             force = carried * curve(trace.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
             # force of the column on its share of the slab
@@ -361,9 +361,9 @@ def _starts(p: float, step: float) -> Iterator[tuple[InitialState, GroundMotion]
         yield initial, GroundMotion(acceleration, _PIECE * step)
 
 
-_SPINS = (1e-2, 1e-5)  # whose passes are near, and cost a model of fixed steps all of its digits
-_LEAST_TILT = 1e-3  # [rad] rounding of B is as large as L below
-# where the ground accelerates evenly in three directions, until its record ends in full swing
+_SPINS = (1e-2, 1e-5)  # spins with near passes, where a model of fixed steps loses all of its digits
+_LEAST_TILT = 1e-3  # [rad] below it rounding of B is as large as L
+# ground that accelerates evenly in three directions, with a record that ends in full swing
 PUSHED = Case(
     PIER,
     GroundMotion(np.tile(GRAVITY * np.array([-0.05, 0.04, 0.2]), (2, 1)), 0.9),
@@ -371,7 +371,7 @@ PUSHED = Case(
     duration=1.5,
 )
 ROLLING = replace(RELEASE, friction=20.0, rolling_resistance=0.01 * PIER.base_radius)
-_ROLLING_SAMPLE = 2e-3  # [s] at which Simpson's rule leaves less than the models
+_ROLLING_SAMPLE = 2e-3  # [s] with an error of Simpson's rule below that of the models
 EL_CENTRO = Case(PIER, el_centro_1940().scaled(2.0), duration=5.0)
 
 
@@ -398,7 +398,7 @@ def free_motion(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def rolling_loss(subject: Subject, support: str) -> Iterator[Result]:
-    """With rolling resistance a release loses the integral of delta N w, and says so.
+    """With rolling resistance a release loses the integral of delta N w, and states this loss.
 
     w is the horizontal part of the angular velocity, theta' across the lean and phi' sin(theta) along it in
     a recess; N is the contact force of the trace. The friction is plenty: an engine may take from the
@@ -424,7 +424,7 @@ def work_of_the_ground(subject: Subject, support: str) -> Iterator[Result]:
     motion = PUSHED.motion
     assert motion is not None
     trace = subject.simulate(PUSHED, support, sample_step=0.05)
-    within = np.arange(round(PUSHED.length / 0.05) + 1)  # a swing or a fall that goes on is not asked for
+    within = np.arange(round(PUSHED.length / 0.05) + 1)  # without motion after the end
     last = np.minimum(within, round(motion.duration / 0.05))
     work = -(trace.centre_of_mass[last] - trace.centre_of_mass[0]) @ motion.acceleration[0]
     energy = trace.energy[within]

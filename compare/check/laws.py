@@ -44,7 +44,7 @@ from .measurement import (
 )
 from .subject import SLAB, Subject
 
-_NODES = 64  # more of them come nearer to the ends, where rounding of the energies counts
+_NODES = 64  # more nodes come nearer to the ends, where rounding of the energies counts
 _BISECTIONS = 200
 _QUADRATURE = "quadrature of the energies, good to 1e-9"
 VANISHING_SPIN = 1e-8  # [rad/s]
@@ -83,7 +83,7 @@ def returns(subject: Subject, support: str, case: Case, of: str) -> Iterator[Res
 
 
 def steady_wobble(subject: Subject, support: str) -> Iterator[Result]:
-    """At the rate at which (18) balances, phi'^2 = 2 V'/B', the tilt stays, on any support."""
+    """At the rate at which (18) balances, phi'^2 = 2 V'/B', the tilt is constant, on any support."""
     tilt = 0.3 * PIER.alpha  # below the energy at balance
     case = release_case(0.3, steady_rate(shape_of(PIER), tilt), 1.0)
     trace = subject.simulate(case, support)
@@ -134,7 +134,7 @@ def cone_inertia(shape: Shape) -> float:
     """Return J of B = J theta^2 near upright [m^2]."""
     small = 1e-4
     near, double = turn_inertia(shape, np.array([small, 2.0 * small]))
-    # the next term is one of theta^3: extrapolated
+    # the next term is of order theta^3: removed by extrapolation
     return float(2.0 * near - 0.25 * double) / small**2
 
 
@@ -192,10 +192,10 @@ LIFTING = GroundMotion(
     GRAVITY * np.array([[0.0, 0.0, 0.0], [0.12, 0.06, 0.1], [0.20, 0.20, -0.1], [0.20, 0.22, -0.12]]), 0.2
 )
 DIRECTIONS, SLENDERNESS = 24, (0.1, 0.2, 0.5, 1.0)  # directions and tan(alpha) of the static loads
-# what the mean of a force over 65 steps has of velocities that are off at random: root of the sum of squares
-# of the differences of the weights of its Hann window, pi/(2 33^1.5)
+# effect of random errors of velocities on the mean of a force over 65 steps: root of the sum of squares of
+# the differences of the weights of its Hann window, pi/(2 33^1.5)
 _MEAN = 1.0 / 120.0
-_ASIDE = 0.04  # [-] no symmetry of a collision detector, in steps of the sweep
+_ASIDE = 0.04  # [-] offset of the sweep from symmetries of a collision detector, in its steps
 
 
 def stands(subject: Subject, support: str) -> Iterator[Result]:
@@ -239,7 +239,7 @@ def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def falls(subject: Subject, support: str) -> Iterator[Result]:
-    """A release beyond the balance ends with the side on the ground, as an outcome."""
+    """A release beyond the balance overturns, as an outcome."""
     start = InitialState(1.5 * PIER.alpha, rolling_rate=0.1)
     trace = subject.simulate(Case(PIER, initial=start, duration=4.0, friction=5.0), support)
     ends = trace.outcome == "overturned" and trace.tilt[-1] == trace.peak_tilt == OVERTURNED_TILT
@@ -259,7 +259,7 @@ def static_loads(subject: Subject, support: str) -> Iterator[Result]:
                 push = share * GRAVITY * tan_alpha * np.array([math.cos(azimuth), math.sin(azimuth)])
                 motion = GroundMotion([0.0 * push, *[push] * 6], 0.02)
                 trace = subject.simulate(Case(cylinder, motion, friction=2.0), support)
-                # after 0.1 s of a load 2 % over the threshold it is 1.2e-4 alpha
+                # after 0.1 s of a load 2 % over the threshold the tilt is 1.2e-4 alpha
                 lifted = trace.tilt[-1] > 1e-4 * cylinder.alpha and math.isfinite(trace.uplift_time)
                 if lifted != (share > 1.0) or (share < 1.0 and math.isfinite(trace.uplift_time)):
                     wrong.append(f"{share:g} g tan(alpha) = {tan_alpha:g}, {math.degrees(azimuth):.1f} deg")
@@ -312,14 +312,14 @@ def place(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def slip(subject: Subject, support: str) -> Iterator[Result]:
-    """The rim rolls without slip, in a recess and on flat ground; a rim that is held by contact creeps."""
+    """The rim rolls without slip, in a recess and on flat ground; in an engine it creeps."""
     trace = subject.simulate(RELEASE, support)
     bound = subject.tolerance_bound(100.0, "creep of a rim that rolls for 3 s", "b")
     yield at_most("slip", largest(trace.slip) / PIER.base_radius, bound)
 
 
 def turning(subject: Subject, support: str) -> Iterator[Result]:
-    """Turning points, passes and peak are those of the sampled tilt: vertices of polynomials through it."""
+    """Turning points, passes and peak equal those of the sampled tilt: vertices of polynomials through it."""
     case = RELEASE if "stepper" in subject.features else _SHAKEN
     trace = subject.simulate(case, support, sample_step=_SAMPLE, rest_tilt=0.0)
     moving = np.flatnonzero(np.isfinite(trace.rolling_angle))

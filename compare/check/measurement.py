@@ -1,4 +1,4 @@
-"""Problems of the checks, what is measured of their motions, and results: a value, its bound, the reason."""
+"""Problems of the checks, measurements of their motions, and results: a value, its bound, the reason."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class Result(CompactRepr):
 
 
 def at_most(name: str, value: float, bound: Bound, cause: str = "", note: str = "") -> Result:
-    """Return the result that compares `value` with `bound`; a value that is no number fails."""
+    """Result of the comparison of `value` with `bound`; NaN fails."""
     value = float(value)
     return Result(
         name=name,
@@ -121,13 +121,13 @@ def at_most(name: str, value: float, bound: Bound, cause: str = "", note: str = 
 
 
 def worst_of(name: str, errors: Mapping[str, float], bound: Bound) -> Result:
-    """Return the result on the largest of several errors, and its place; one that is no number fails."""
+    """Result for the largest of several errors, and its place; NaN fails."""
     place = max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
     return at_most(name, abs(errors[place]), bound, note=f"largest of {len(errors)}: {place}")
 
 
 def not_run(name: str, note: str) -> Result:
-    """Return the result of a check that could not run, and why: no failure."""
+    """Result of a check that could not run, with the reason: no failure."""
     return Result(name=name, value=math.nan, bound=math.nan, reason="", outcome=NOT_RUN, note=note)
 
 
@@ -140,13 +140,13 @@ THRESHOLD = GRAVITY * PIER.tan_alpha  # ground acceleration of its uplift [m/s^2
 def release_case(
     share: float, spin: float, duration: float, cylinder: RockingBody = PIER, name: str = ""
 ) -> Case:
-    """Return a release from rest at a share of alpha, with a rolling rate [rad/s]."""
+    """Release from rest at a share of alpha, with a rolling rate [rad/s]."""
     initial = InitialState(tilt=share * cylinder.alpha, rolling_angle=0.3, rolling_rate=spin)
     return Case(cylinder, initial=initial, duration=duration, name=name)
 
 
 def polyline(times: ArrayLike, values: ArrayLike, step: float) -> GroundMotion:
-    """Return the motion that goes straight from knot to knot.
+    """Piecewise linear motion through knots.
 
     Parameters
     ----------
@@ -163,17 +163,17 @@ def polyline(times: ArrayLike, values: ArrayLike, step: float) -> GroundMotion:
 
 
 def refined(motion: GroundMotion, times: int) -> GroundMotion:
-    """Return the same function of time with `times` as many samples."""
+    """Motion sampled `times` as finely, as a function of time unchanged."""
     knots = motion.time_step * np.arange(len(motion.acceleration))
     return polyline(knots, motion.acceleration, motion.time_step / times)
 
 
 def steady(acceleration: ArrayLike, duration: float) -> GroundMotion:
-    """Return ground that accelerates evenly by `acceleration` (2,) or (3,) [m/s^2] for `duration` [s]."""
+    """Ground with a constant acceleration (2,) or (3,) [m/s^2] for `duration` [s]."""
     return GroundMotion(np.tile(np.asarray(acceleration, dtype=float), (2, 1)), duration)
 
 
-# one pass of the upright position, at 0.1 alpha
+# one near-upright pass, at 0.1 alpha
 RELEASE = release_case(0.5, 0.5, 3.0, name="release")
 FRAME_RELEASE = release_case(0.5, 0.5, 3.4, FRAME, "release of a frame")
 # rocks in three dimensions from rest, through several passes that are not near; one for each component
@@ -188,18 +188,18 @@ _VERTEX = 3  # samples on either side of a turning point
 
 
 def largest(values: Array | float) -> float:
-    """Return the largest size of values of any shape; NaN of none."""
+    """Largest absolute value; NaN of an empty array."""
     return float(np.abs(values).max()) if np.size(values) else math.nan
 
 
 def lean(trace: Trace) -> NDArray[np.complex128]:
-    """Return sin(tilt) exp(i rolling angle) over sin(alpha) (n,): smooth where the angle jumps, 0 at rest."""
+    """Tilt vector sin(tilt) exp(i rolling angle) over sin(alpha) (n,): smooth upright, 0 at rest."""
     turn = np.exp(1j * np.nan_to_num(trace.rolling_angle))
     return np.asarray(np.sin(trace.tilt) / math.sin(trace.case.cylinder.alpha) * turn)
 
 
 def lean_difference(found: Trace, model: Trace, end: float = math.inf, *, clock: float = 1.0) -> Array:
-    """Return the difference of the leans until a time (n,), over sin(alpha) of `found`.
+    """Difference of the tilt vectors until a time (n,), over sin(alpha) of the first.
 
     Of the tilt alone without an azimuth; `clock` stretches the time of `found`.
     """
@@ -215,7 +215,7 @@ def lean_difference(found: Trace, model: Trace, end: float = math.inf, *, clock:
 
 
 def turning_points(time: Array, tilt: Array, angle: Array) -> Array:
-    """Return time, tilt, rolling angle and 1 or -1 of each maximum and minimum of sampled tilts (k, 4).
+    """Time, tilt, rolling angle and 1 or -1 of each maximum and minimum of sampled tilts (k, 4).
 
     The vertex of the polynomial through seven samples: exact to rounding where they are dense.
     """
@@ -237,7 +237,7 @@ def turning_points(time: Array, tilt: Array, angle: Array) -> Array:
 
 
 def trace_of(result: object, case: Case, support: str) -> Trace:
-    """Return the output of somebody's model as a trace.
+    """Trace from the output of an external model.
 
     Raises
     ------
@@ -288,5 +288,5 @@ def trace_of(result: object, case: Case, support: str) -> Trace:
 
 
 def why(trace: Trace) -> str:
-    """Reason of the end of a run, for a note."""
+    """Reason for the end of a run, for a note."""
     return "; ".join(fact.meaning for fact in trace.facts)

@@ -35,12 +35,12 @@ _NEAR = 0.005  # relative distance of the releases from the balance, on both sid
 
 
 def _releases(subject: Subject) -> dict[str, Case]:
-    """Return a release of a column, and of a frame where the subject knows one."""
+    """Releases of a column, and of a frame where the subject supports one."""
     return {"column": _HELD} | ({"frame": _HELD_FRAME} if SLAB in subject.features else {})
 
 
 def releases(subject: Subject, support: str) -> Iterator[Result]:
-    """Period, regained tilt and angle of turn of a release are those of the quadrature with its energy."""
+    """Period, regained tilt and angle of turn of a release equal the quadrature with its energy."""
     for of, case in _releases(subject).items():
         yield from returns(subject, support, case, f"{of} with a tendon")
 
@@ -51,7 +51,7 @@ def rocking(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def stored_energy(subject: Subject, support: str) -> Iterator[Result]:
-    """Energy of a release is constant and counts what the tendon stores, P0 e + kt e^2/2."""
+    """Energy of a release is constant and includes that of the tendon, P0 e + kt e^2/2."""
     for of, case in _releases(subject).items():
         found = subject.simulate(case, support)
         bound = subject.tolerance_bound(10.0, "no loss; near passes magnify the error of a step")
@@ -67,7 +67,7 @@ def stored_energy(subject: Subject, support: str) -> Iterator[Result]:
 
 
 def load_at_rest(subject: Subject, support: str) -> Iterator[Result]:
-    """A column that stands presses on the ground with its weight and the prestress.
+    """The contact force of a column at rest is its weight and the prestress.
 
     Under a slab that is over the weight with the share gamma of the slab, and at the top over that share.
     """
@@ -102,7 +102,7 @@ def _couple(shape: Shape, tilt: float) -> float:
 
 
 def balance(subject: Subject, support: str) -> Iterator[Result]:
-    """A release within the tilt at which the static couple vanishes comes back, one beyond it falls."""
+    """A release below the balance tilt returns, one above it falls."""
     shape = shape_of(PIER, TENDON)
     low, high = PIER.alpha, OVERTURNED_TILT
     for _ in range(60):

@@ -1,4 +1,4 @@
-"""Subjects of the checks: a reduced model, an engine, somebody's model, or files of trajectories."""
+"""Subjects of the checks: a reduced model, an engine, another model, or files of trajectories."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ FIELDS = frozenset(
     | {"energy", "contact_force", "extrema", "passes", "peak_tilt", "outcome", "uplift_time"}
 )
 _ENGINE_FIELDS = ("slip", "contact_offset", "energy_error", "residual_displacement")
-# relative: what the reduced models leave at rtol 1e-11, and passes magnify; 1e-12 to 3e-11 was measured
+# relative: error of the reduced models at rtol 1e-11, magnified by passes; 1e-12 to 3e-11 was measured
 MODEL_TOLERANCE, _MODEL_RTOL = 1e-10, 1e-11
 # relative to alpha: contact at the default step; a tenth to a half of it was measured with all engines
 ENGINE_TOLERANCE = 1e-5
-# rounding errors that the tolerance allows: thousands of steps add them up in part
+# rounding errors within the tolerance: thousands of steps add them up in part
 _ROUNDINGS = 1e4
-# tolerance for the same motion, rotated or mirrored: solvers stop at a tolerance, and a pass magnifies the
-# rest
+# tolerance for the same motion, rotated or mirrored: solvers stop at a tolerance, and passes magnify the
+# error
 ENGINE_REPEATABILITY = 1e-5
 # features of a subject: an independent model as its reference, trajectories of files alone, starts from a
-# cylinder that stands, wobbling frames
+# standing cylinder, wobbling frames
 REFERENCE, FILES, UPLIFT, SLAB = "reference", "files", "uplift", "slab"
-TOLERANCE = 1e-3  # default for a model or trajectory of somebody else
+TOLERANCE = 1e-3  # default for an external model or trajectory
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Subject(CompactRepr):
-    """One source of motions, as every check sees it.
+    """One source of motions, in the form that every check takes.
 
     Parameters
     ----------
@@ -89,17 +89,17 @@ class Subject(CompactRepr):
     def simulate(
         self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: object
     ) -> Trace:
-        """Return the motion of a case; options that the source does not take are left out."""
+        """Motion of a case; options that the source does not take are left out."""
         known = {name: value for name, value in options.items() if name in self.features}
         return self.source(case, support, sample_step=sample_step, **known)
 
     def tolerance_bound(self, times: float, reason: str, unit: str = "") -> Bound:
-        """Return so many times the tolerance as a bound."""
+        """A multiple of the tolerance as a bound."""
         return Bound(times * self.tolerance, f"{times:g} times its tolerance: {reason}", unit)
 
 
 def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) -> Subject:
-    """Return the reduced models.
+    """Subject of the reduced models.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) ->
 
 
 def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> Subject:
-    """Return an engine with its settings.
+    """Subject of an engine with its settings.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def engine(name: str, time_step: TimeStep | None = None, **settings: object) -> 
 def external_model(
     model: Callable[[Case, str], object], *, support: str = RECESS, tolerance: float = TOLERANCE
 ) -> Subject:
-    """Return a model of somebody else.
+    """Subject of an external model.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def external_model(
     try:
         first = remembered(RELEASE, support, sample_step=SAMPLE_STEP)
         known = {name for name in ("rolling_angle", "energy") if np.isfinite(getattr(first, name)).any()}
-    except Exception:  # the checks say what it raises, each in its place
+    except Exception:  # exceptions are reported by each check
         known = {"rolling_angle", "energy"}
     return Subject(
         label=f"{getattr(model, '__module__', '')}:{getattr(model, '__name__', 'model')}",
@@ -220,7 +220,7 @@ def external_model(
 
 
 def trajectories(traces: Sequence[Trace], *, support: str = RECESS, tolerance: float = TOLERANCE) -> Subject:
-    """Return the motions of files.
+    """Subject of the motions in files.
 
     Parameters
     ----------
@@ -265,7 +265,7 @@ def trajectories(traces: Sequence[Trace], *, support: str = RECESS, tolerance: f
 
 
 def load_model(name: str) -> Callable[[Case, str], object]:
-    """Return the callable that "module:function" names; modules of the working folder are found.
+    """Callable named "module:function"; modules of the working folder are found.
 
     Raises
     ------
@@ -294,7 +294,7 @@ def _require(support: str, tolerance: float) -> None:
 
 
 def _with_memory(source: Simulate) -> Simulate:
-    """Return the source that runs each case once, since many checks look at one motion."""
+    """Source that runs each case once and stores it, since many checks use one motion."""
     kept: dict[str, Trace] = {}
 
     def simulate(case: Case, support: str, **options: object) -> Trace:

@@ -1,4 +1,4 @@
-"""Runs of a suite compared with the models: by the bounds that it states, or by a second run of another step.
+"""Runs of a suite compared with the models: by its stated bounds, or by a second run at another step.
 
 Where none is stated every case is compared with its model twice. As it is: engines err at uplift, and near
 passes magnify what they err, so the bound is a wide one. It grows with the difference of the two steps and
@@ -40,18 +40,18 @@ from .agreement import walls
 from .measurement import Array, Bound, Result, at_most, not_run, why
 from .subject import Simulate
 
-# times the difference of two steps, of which the error is once or twice as much
+# factor on the difference of two steps, whose error is once or twice as large
 CLEAN, WIDE = 5.0, 10.0
-LEAST = 1e-5  # [alpha] of contact, whatever the step
-# of the cylinder that the motion meets: tilt over alpha, rolling rate and length in units of its time scale,
-# and strength of the motion over what uplifts
+LEAST = 1e-5  # [alpha] error of contact at any step
+# state of the cylinder when the strongest motion begins: tilt over alpha, rolling rate and length in units of
+# its time scale, and strength of the motion over the uplift threshold
 _LEAN, _SPIN, _LENGTH, _STRENGTH = 0.4, 0.5, 2.0, 0.5
-# diagnostics after which the trace is outside its model's assumptions
+# diagnostics after which the assumptions of its model do not hold
 _LIMITS = ("slip", "lift_off", "tension", "friction_needed", "wall_contact", "unresolved_pass", "side")
 ENDS = Bound(AGREEMENT, "the run must reach its end", "alpha")
-# two agree if they differ by less than this share of the difference of engine and model
+# two runs agree if they differ by less than this share of the difference of engine and model
 _SAME_SIDE = 0.3
-# cause and its reason, by what a second engine agrees with
+# cause and its reason, by the run with which a second engine agrees
 _SIDES = {
     "model": ("{what}", "{other} follows the model to {from_model:.1e} alpha"),
     "engine": ("the {model}", "{engine} and {other} agree to {from_engine:.1e} alpha"),
@@ -61,7 +61,7 @@ _SIDES = {
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class SuiteRuns:
-    """Runs of a suite, each made once and kept for the questions that follow.
+    """Runs of a suite, each computed once and stored.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class SuiteRuns:
 
 
 def check_suite(runs: SuiteRuns, jobs: Sequence[Job], bounds: Bounds | None) -> Iterator[Result]:
-    """Yield the results of the runs of a suite, by the bounds that it states, or by its own runs."""
+    """Results of the runs of a suite, by its stated bounds, or by its own runs."""
     traces = runs.traces(jobs)
     if bounds is None:
         prepare(runs, jobs, traces)
@@ -104,12 +104,12 @@ def check_suite(runs: SuiteRuns, jobs: Sequence[Job], bounds: Bounds | None) -> 
 
 
 def reference_of(run: Run, bounds: Bounds | None) -> Run:
-    """Return the reduced model that a run is compared with."""
+    """Reduced model with which a run is compared."""
     return run.own_model if bounds is None or bounds.reference == "own" else Run(None, bounds.reference)
 
 
 def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) -> Iterator[Result]:
-    """Yield the results on one run of an engine."""
+    """Results of one run of an engine."""
     reference = reference_of(job.run, bounds)
     name = f"{job.case.name}, {job.label} compared with {reference.support}"
     if trace.outcome == "failed":
@@ -121,14 +121,14 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
     if bounds is None:
         yield from results_without_bounds(runs, job, name, model, trace)
         return
-    # no bound is on the prediction
+    # without a bound on the prediction
     none = Prediction(length=job.case.length, reason="")
     row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=none)
     for column, most in bounds.as_dict().items():
         unit, meaning = SUMMARY_COLUMNS[column]
         value = abs(row[column])
         if column == "agreement_time":
-            # the shorter the worse: what is missing may be nothing
+            # a shorter time is worse: a missing part may be zero
             missing = max(0.0, most - value) if row["diverged"] else 0.0
             bound = Bound(0.0, f"the suite asks for {most:g} s", unit)
             yield at_most(f"{name}: agreement_time missing", missing, bound, note=f"it is {value:.3g} s")
@@ -140,7 +140,7 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
 def results_without_bounds(
     runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace
 ) -> Iterator[Result]:
-    """Yield the results on a run of a suite that states no bounds."""
+    """Results of a run of a suite without bounds."""
     yield _result_by_step(runs, job, name, model, trace, clean=False)
     if (other := _in_motion(job)) is not None:
         (trace,) = runs.traces([other])
@@ -154,14 +154,14 @@ def results_without_bounds(
 
 
 def prepare(runs: SuiteRuns, jobs: Sequence[Job], traces: Sequence[Trace]) -> None:
-    """Make what `compared` asks for of many runs, side by side."""
+    """Compute the motions for many runs, side by side."""
     others = [other for job in jobs if (other := _in_motion(job)) is not None]
     known = [*zip(jobs, traces, strict=True), *zip(others, runs.traces(others), strict=True)]
     runs.traces([other_step(job, trace)[0] for job, trace in known if trace.outcome != "failed"])
 
 
 def in_motion(case: Case) -> Case | None:
-    """Return the first seconds of a release, or the strongest of a motion as a rocking cylinder meets them.
+    """First seconds of a release, or the strongest of a motion, which a rocking cylinder meets.
 
     None where nothing moves.
     """
@@ -183,22 +183,22 @@ def in_motion(case: Case) -> Case | None:
 
 
 def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
-    """Return the run at twice or half its step, and the factor from the difference of both to the error."""
+    """Run at twice or half its step, and the factor from the difference of both to the error."""
     case, step = job.case, trace.time_step
-    if not math.isfinite(step):  # several steps: use the default of the engine
+    if not math.isfinite(step):  # several steps: the default of the engine is used
         step = default_step(case.cylinder.semidiagonal, case.gravity)
     for times, factor in ((2.0, 1.0), (0.5, 2.0)):
         run = at_step(job.run, times * step)
         try:
             require_runnable(case, run)
-        except ValueError:  # twice the step is more than contact allows
+        except ValueError:  # twice the step is too large for contact
             continue
         return Job(case=case, run=run, label=f"{job.label}, {times:g} times the step"), factor
     raise ValueError(f"the run must have a step beside {step:g} s, got none for {job.label}")
 
 
 def _in_motion(job: Job) -> Job | None:
-    # none has a model once its walls are touched
+    # no model exists once walls are touched
     case = in_motion(job.case) if job.run.support.has_model else None
     return None if case is None else Job(case=case, run=job.run, label=job.label)
 
@@ -216,7 +216,7 @@ def _result_by_step(
     count = min(len(each) for each in (apart, *parts))
     allowed = np.maximum.reduce([np.abs(each[:count]) for each in parts])
     if not clean:
-        allowed = np.maximum.accumulate(allowed)  # never less than it was before
+        allowed = np.maximum.accumulate(allowed)  # monotonic in time
     time = trace.time[:count]
     limit = min([model.first(*_LIMITS), trace.first(*_LIMITS), *landings(model)[:1], job.case.length])
     within = (time >= np.nan_to_num(model.uplift_time)) & (time < limit) & (clean | (allowed < AGREEMENT))
@@ -240,7 +240,7 @@ def _result_by_step(
 
 
 def _by_step(runs: SuiteRuns, job: Job, trace: Trace) -> Array | None:
-    """By how much a run changes with its step (n,) [alpha]; None where the other one fails."""
+    """Change of a run with its step (n,) [alpha]; None where the other run fails."""
     other, factor = other_step(job, trace)
     (second,) = runs.traces([other])
     return None if second.outcome == "failed" else factor * np.abs(_tilt_difference(trace, second))
@@ -253,7 +253,7 @@ def _tilt_difference(one: Trace, other: Trace) -> Array:
 
 
 def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Array) -> list[Array]:
-    """Distance of copies of the model [alpha]: off by as much as the engine at first, and closing as it does.
+    """Distance of copies of the model [alpha]: perturbed to the early error of the engine, with its impacts.
 
     A base that opens by less than the contact sinks in stays closed in every engine, at every step: after
     weak shaking a model chatters there, and the strong motion that follows finds it elsewhere.
@@ -272,7 +272,7 @@ def _copies(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, by_step: Arra
 
 
 def likely_cause(runs: SuiteRuns, job: Job, model: Trace, trace: Trace, *, until: float) -> tuple[str, str]:
-    """Likely cause of a difference of engine and model, with its reason: what a second engine agrees with."""
+    """Likely cause of a difference of engine and model, by the run with which a second engine agrees."""
     engine, support = job.run.engine, job.run.support
     here = [name for name in standard_engines() if name != engine and not engine_fault(name)]
     other = next((name for name in here if support in find_engine(name).supports), None)

@@ -29,7 +29,7 @@ _ONE_PERCENT = 1.63
 
 
 class Sample(TypedDict):
-    """Numbers of one case: None stands for what is not known."""
+    """Numbers of one case; None for an unknown number."""
 
     name: str
     claim: str
@@ -41,11 +41,11 @@ class Sample(TypedDict):
     peak_tilt: float | None
     time: list[float]
     signals: dict[str, list[float | None]]
-    copies: NotRequired[list[list[float | None]]]  # tilts of each, over alpha, at the times above
+    copies: NotRequired[list[list[float | None]]]  # tilts of each copy, over alpha, at the times above
 
 
 class Entry(Sample):
-    """A sample with the end of the comparison and, by signal, the repeatability of its numbers."""
+    """Sample with the end of the comparison and, by signal, the repeatability of its numbers."""
 
     agreement_time: float | None
     repeats: float
@@ -53,7 +53,7 @@ class Entry(Sample):
 
 
 class Described(TypedDict):
-    """A method."""
+    """Description of a method."""
 
     engine: str | None
     time_step: float | Literal["auto", "extrapolated"] | None
@@ -106,13 +106,13 @@ class FingerprintVerdict:
         return int(self.word == CHANGED)
 
     def __str__(self) -> str:
-        """The word, and what is known of the case that decides, by the names of the parameters."""
+        """The word, and the numbers of the case that decides, by the names of the parameters."""
         known = {name: value for name, value in asdict(self).items() if value == value != ""}
         return "; ".join([known.pop("word"), *(f"{name}: {value}" for name, value in known.items())])
 
 
 def compare(old: Iterable[Entry], new: Iterable[Sample]) -> FingerprintVerdict:
-    """Return the verdict on two fingerprints; the entries of `new` are taken only up to the first change."""
+    """Verdict on two fingerprints; the entries of `new` are computed only up to the first change."""
     verdict = FingerprintVerdict(SAME)
     for one, other in zip(old, new, strict=True):
         found = compare_entries(one, other)
@@ -157,7 +157,7 @@ def compare_entries(old: Entry, new: Sample) -> FingerprintVerdict:
 
 
 def late_peaks(entry: Sample, end: float) -> np.ndarray:
-    """Return the largest sampled tilt of each copy from a time on; its last tilt if it ended before."""
+    """Largest sampled tilt of each copy from a time on; its last tilt if it ended before."""
     entries = []
     for copy in entry.get("copies", ()):
         known = [tilt for tilt in copy if tilt is not None]
@@ -168,13 +168,13 @@ def late_peaks(entry: Sample, end: float) -> np.ndarray:
 
 
 def _first_difference(old: Entry, new: Sample) -> tuple[str, float, float, float] | None:
-    """Return signal, time, difference and what is allowed where the first sample differs."""
+    """Signal, time, difference and allowed difference where the first sample differs."""
     entries = []
     for name, wanted in old["signals"].items():
         got = new["signals"][name]
         for k in range(max(len(wanted), len(got))):
             last = min(k, len(wanted) - 1)
-            # a motion that ended is not there
+            # a motion that has ended has no sample
             there = k < min(len(wanted), len(got))
             apart = _difference(wanted[k], got[k]) if there else math.inf
             moved = there and abs(old["time"][k] - new["time"][k]) > 10.0 * old["repeats"]
@@ -186,7 +186,7 @@ def _first_difference(old: Entry, new: Sample) -> tuple[str, float, float, float
 
 
 def _difference(one: float | None, other: float | None) -> float:
-    """Return a difference: none where neither is known, infinite where only one is."""
+    """Difference of two numbers: none where neither is known, infinite where only one is."""
     if one is None or other is None:
         return 0.0 if one is other else math.inf
     return abs(one - other)

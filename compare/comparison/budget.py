@@ -47,7 +47,7 @@ from ..runs.execution import SAMPLE_STEP, Job
 
 Array = NDArray[np.float64]
 
-# share of the agreement that the RMS of a budget covers: its end is where everything grows at once
+# share of the agreement over which the RMS of a budget is taken: at its end all parts grow at once
 COVERED = 0.8
 # smaller differences are not worth explaining [alpha]
 WORTH_EXPLAINING = 1e-4
@@ -58,9 +58,9 @@ LEAST_ORDER = 0.5
 # samples are multiples of one step; two that differ by less are the same [s]
 _SAME_TIME = 1e-9
 
-# times that the step of the run is halved: always two, and one more where the limit is uncertain
+# number of halvings of the step: always two, and one more where the limit is uncertain
 _ALWAYS, _AT_MOST = 2, 3
-# uncertainty of a limit, over the whole difference, that asks for a finer step
+# uncertainty of a limit, over the whole difference, that requires a finer step
 _UNCERTAIN = 0.1
 # planar in the x z plane, with the loss of a base that lands flat
 _IMPACT = Run(None, RECESS, plane=0.0, restitution="momentum")
@@ -129,7 +129,7 @@ class ErrorBudget(CompactRepr):
 
     @property
     def not_split(self) -> str:
-        """Why numerics and unexplained are not stated; empty where they are.
+        """Reason why numerics and unexplained are not stated; empty where they are.
 
         Where the model form is nearly all of the difference, they are. Else "unresolved_pass": a pass within
         the agreement is left to chance, at any step; "order": finer runs tend to no limit, in an order below
@@ -240,7 +240,7 @@ def extrapolated(time: Array, tilts: Sequence[Array], steps: Sequence[float], *,
 def _intercept(tilts: Sequence[Array], *, smooth: bool) -> Array:
     """Value at step zero of a polynomial through the finest runs."""
     if smooth and len(tilts) > 2:
-        # the first order, and then the second
+        # first order is removed, then second
         return to_zero_step([to_zero_step(tilts[-3:-1], 1), to_zero_step(tilts[-2:], 1)], 2)
     if smooth or len(tilts) == 2:
         return to_zero_step(tilts[-2:], 1)
@@ -273,7 +273,7 @@ class Refined:
 
     @property
     def smooth(self) -> bool:
-        """Whether the error of the run is a power series in the step; from rest it is not in every engine."""
+        """Whether the error of the run is a power series in the step; from rest in some engines it is not."""
         return self.case.is_release or engine_facts(self.run.engine_name).smooth_uplift
 
     @property
@@ -283,7 +283,7 @@ class Refined:
 
 
 def limits(refined: Sequence[Refined], simulate: Simulate) -> list[Limit | None]:
-    """Return the limit of each run; None of one whose finer runs fail or crash.
+    """Limit of each run; None for a run whose finer runs fail or crash.
 
     Parameters
     ----------
@@ -298,7 +298,7 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> list[Limit | None]
         for (index, _), trace in zip(wanted, finer, strict=True):
             traces[index].append(trace)
 
-    # not at all, too, where no run was at the step itself
+    # also zero, where no run was at the step itself
     every = list(enumerate(refined))
     halve([(index, times) for index, each in every for times in range(not each.extrapolated, _ALWAYS + 1)])
     halve([(index, _AT_MOST) for index, each in every if _is_uncertain(each, traces[index])])
@@ -306,7 +306,7 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> list[Limit | None]
 
 
 def _job(refined: Refined, times: int) -> Job:
-    """Return the run with its step halved several times, up to the time to which its limit is needed."""
+    """Run with its step halved several times, up to the time for which its limit is needed."""
     case = refined.case
     end = min(case.length, math.ceil(refined.end / SAMPLE_STEP - 1e-6) * SAMPLE_STEP)
     return Job(
@@ -319,7 +319,7 @@ def _job(refined: Refined, times: int) -> Job:
 def _limit(refined: Refined, traces: Sequence[Trace]) -> Limit | None:
     if any(trace.outcome == "failed" for trace in traces):
         return None
-    # a run that uplifts by chance has no part in the limit
+    # a run that uplifts by chance is left out of the limit
     used = traces if refined.smooth else traces[1:]
     count = common_count([trace.time for trace in used])
     tilts = [trace.tilt[:count] for trace in used]
@@ -333,7 +333,7 @@ def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
     limit = _limit(refined, traces)
     if limit is None or not refined.smooth:
         return False
-    # the stretch that the budget covers, from the uplift on: before it there is nothing to err in
+    # the part of the agreement under the budget begins at the uplift: before it there is no motion
     start = start_of(refined.trajectory)
     covered = (limit.time >= start) & (limit.time <= start + COVERED * (refined.end - start))
     error = rms(limit.error[covered]) / refined.case.cylinder.alpha
@@ -344,7 +344,7 @@ def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
 def case_budgets(
     compared: Sequence[Compared], traces: Mapping[Key, Trace], simulate: Simulate
 ) -> dict[tuple[str, str, str], ErrorBudget]:
-    """Return the budget of each run and reference: by name of the case, label and label of the reference.
+    """Budget of each run and reference: by name of the case, label and label of the reference.
 
     What crashed, failed or never moved has none.
 
@@ -401,7 +401,7 @@ def case_budgets(
 
 
 def _impacts(own: Mapping[Key, Trace], simulate: Simulate) -> dict[Key, Trace]:
-    """Return planar motion with impacts, for models that go through upright: by names of case and model.
+    """Planar motion with impacts, for models that pass upright: by names of case and model.
 
     Motion in one vertical plane passes upright itself, and there the base lands flat. The recess and
     flat-ground models go on without loss, as the limit of a vanishing spin does. A rigid base takes the
@@ -431,7 +431,7 @@ def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | No
 
 
 def unexplained_rows(budgets: pd.DataFrame) -> pd.DataFrame:
-    """Rows of a table of budgets in which too much stays unexplained, the worst first.
+    """Rows of a table of budgets with too large an unexplained share, the worst first.
 
     Rows whose whole difference is below 1e-4 alpha, or is not split, are left out.
 

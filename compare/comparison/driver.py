@@ -127,7 +127,7 @@ def comparison(
         budgets = case_budgets(compared, traces, run_all) if budget else {}
 
         def copy_of(case: Case, run: Run) -> Trace:
-            # milliseconds: not worth a process, nor a word about its progress
+            # a run of milliseconds needs neither a process nor progress
             return simulate_all([Job(case=case, run=run, label="copy")], workers=1, cache=cache)[0]
 
         rows = [
@@ -177,7 +177,7 @@ def comparison_row(
     budget: ErrorBudget | None = None,
     until: float | None = None,
 ) -> Row:
-    """Return the row of the summary for one run and one reference, with the prediction of their agreement.
+    """Row of the summary for one run and one reference, with the prediction of their agreement.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def comparison_row(
         estimated_error(case, trial.run, trial.time_step) if budget is None else measured_error(case, budget)
     )
 
-    times = [reference.wall_time]  # a run of a millisecond is as fast as the fastest of some
+    times = [reference.wall_time]  # a run of a millisecond is timed by the fastest of several
 
     def timed(case: Case, run: Run) -> Trace:
         trace = simulate(case, run)

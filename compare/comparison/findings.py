@@ -20,8 +20,8 @@ from .budget import COVERED, LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, unexp
 from .prediction import BEATEN
 from .summary import SummaryRow, own_rows, rows_of
 
-_LISTED = 10  # rows that are named one by one
-_SAME_END = 0.1  # [s] ends of agreements that read the same
+_LISTED = 10  # largest number of rows named one by one
+_SAME_END = 0.1  # [s] ends of agreements that are stated as equal
 
 
 def case_findings(
@@ -49,7 +49,7 @@ def case_findings(
     sound = [row for row in summary if "failed" not in (row.outcome, row.reference_outcome)]
     driven = {row.support: "" for row in summary if row.engine != REDUCED and row.support != EXTERNAL}
     modes = {expected_mode(case, each) for each in driven}
-    for each in list(driven)[: 1 if len(modes) == 1 else None]:  # one mode is said once
+    for each in list(driven)[: 1 if len(modes) == 1 else None]:  # a single mode is stated once
         yield from mode_findings(case, each, named=len(modes) > 1)
     slid = [trace for trace in traces.values() if trace.run.is_model and trace.mode == SLIDES]
     yield from (slide_finding(each.peak_displacement, each.residual_displacement) for each in slid)
@@ -82,7 +82,7 @@ AGREE = (
 
 
 def agreements(rows: pd.DataFrame, length: float) -> Iterator[Finding]:
-    """Findings on how long the runs of each support follow their own model; external ones one by one.
+    """Findings on the agreement of the runs of each support with their own model; external ones singly.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def agreements(rows: pd.DataFrame, length: float) -> Iterator[Finding]:
                 "reason": first.support,
                 "names": tuple(labels),
                 "names_reference": tuple(dict.fromkeys(row.reference for row in summary)),
-                # a tolerance of a small peak is a tenth of it; noise of a measurement is added
+                # the tolerance of a small peak is a tenth of it; that of a measurement includes its noise
                 "difference": first.tolerance + (first.tilt_bound - AGREEMENT if external else 0.0),
                 "until": min(ends),
                 "until_last": max(ends) if max(ends) - min(ends) > _SAME_END else None,
@@ -128,7 +128,7 @@ def agreements(rows: pd.DataFrame, length: float) -> Iterator[Finding]:
 
 
 def cause(row: SummaryRow, length: float, *, touched: bool = False, models_differ: bool = True) -> str:
-    """Cause of the divergence of a run from its reference, a name in the words of comparison.
+    """Cause of the divergence of a run from its reference, a name among the words of comparison.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def cause(row: SummaryRow, length: float, *, touched: bool = False, models_diffe
     by_pass = row.predicted_by == "pass" and support != EXTERNAL and row.predicted_until < length
     start = row.reference_uplift_time
     agreed, predicted = row.within_tolerance_until - start, row.predicted_until - start
-    if by_pass and predicted <= agreed <= BEATEN * predicted:  # one that was survived for longer left nothing
+    if by_pass and predicted <= agreed <= BEATEN * predicted:  # a pass survived for longer had no effect
         return "pass"
     return "near_passes" if math.isfinite(row.closest_pass) else "method"
 
@@ -175,7 +175,7 @@ def causes_of(case: Case, rows: pd.DataFrame, traces: Mapping[str, Trace]) -> li
     recess, flat = (traces.get(str(model)) for model in (RECESS_MODEL, FLAT_MODEL))
 
     def models_differ(row: SummaryRow) -> bool:
-        """Whether half of what ends an agreement lies between the models by then."""
+        """Whether half of the difference at the end of an agreement is between the models."""
         if recess is None or flat is None or not (len(recess.time) and len(flat.time)):
             return True
         pair = make_pair(case.cylinder, recess, flat, until=row.within_tolerance_until)
@@ -210,7 +210,7 @@ _KEYS = {
 
 
 def _causes(rows: Iterator[tuple[SummaryRow, str]]) -> Iterator[Finding]:
-    """A finding for each cause and reference, with the runs that diverge from it."""
+    """Findings for each cause and reference, with the runs that diverge from it."""
     groups: dict[tuple[str, str], list[str]] = {}
     for row, name in rows:
         groups.setdefault((name, row.reference), []).append(row.run)
@@ -223,7 +223,7 @@ def _causes(rows: Iterator[tuple[SummaryRow, str]]) -> Iterator[Finding]:
 
 
 def _mistakes(row: SummaryRow) -> Iterator[Finding]:
-    """The likely mistakes of an external trajectory, and what they explain."""
+    """Likely mistakes of an external trajectory, and the differences that they explain."""
     mistakes, loses = mistakes_of(row), _loses(row)
     values = {"name": row.run, "detail": "; ".join(mistake.words for mistake in mistakes)}
     explained = explains_divergence(row) and (not loses or len(mistakes) > 1)
@@ -252,7 +252,7 @@ def _loses(row: SummaryRow) -> bool:
 
 
 def budget_findings(summary: pd.DataFrame, budgets: pd.DataFrame) -> Iterator[Finding]:
-    """Findings on divergences earlier than predicted, and on budgets: what stays unexplained first.
+    """Findings on divergences earlier than predicted, and on budgets: large unexplained parts first.
 
     Of external trajectories nobody predicts a divergence: the prediction rests on the errors of an engine.
     """

@@ -1,4 +1,4 @@
-"""Error of a peak tilt: the largest of what its method, its data and its model leave open.
+"""Error of a peak tilt: the largest of the errors by its method, its data and its model.
 
 A run has the error of its time step, a reduced model that of its tolerance; input that is known to 1 % leaves
 the spread of perturbed copies; and another reduced model may have another peak.
@@ -19,8 +19,8 @@ from .prediction import Simulate
 
 PERTURBATION = 0.01  # relative perturbation of the input
 RTOL = 1e-8  # default of `reduced.simulate`
-COARSER = 10.0  # tolerance of the coarser run, over that of the run, that estimates the integration error
-# the estimates of a run at several time steps, in `rockwobble.models.diagnostic`
+COARSER = 10.0  # tolerance of the coarser run for the integration error, over that of the run
+# diagnostics with estimates from several time steps, in `rockwobble.models.diagnostic`
 _OF_STEPS = ("settled", "unsettled", "extrapolated")
 
 
@@ -66,7 +66,7 @@ def peak_error(
 
     def apart(*others: Trace, of: Trace = own) -> float:
         fell = {each.outcome == "overturned" for each in (of, *others)}
-        if fell != {False}:  # the tilt at which a run that overturns ends is no peak
+        if fell != {False}:  # the final tilt of an overturned run is no peak
             return math.inf if len(fell) > 1 else 0.0
         return math.sqrt(float(np.mean([(other.peak_tilt - of.peak_tilt) ** 2 for other in others])))
 
@@ -85,7 +85,7 @@ def peak_error(
 
 
 def copies_of_input(case: Case) -> list[Case]:
-    """A case with its motion or release 1 % stronger and 1 % weaker."""
+    """Copies of a case with its motion or release 1 % stronger and 1 % weaker."""
     return [perturbed_in_strength(case, share) for share in (PERTURBATION, -PERTURBATION)]
 
 

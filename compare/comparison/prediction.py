@@ -38,17 +38,17 @@ from .budget import ErrorBudget
 
 # a prediction is in time if the measured agreement time is within this factor of it, either way
 IN_TIME = 2.0
-# one that is beaten by more than this factor predicted nothing, and a run that beats it proves nothing
+# factor beyond which a prediction was too pessimistic to test the run
 BEATEN = 10.0
-# verdict, and reason of an agreement without motion, of a run that has not tested the model
+# verdict, and reason why an agreement has not tested the model
 UNTESTED = ("much later", "too little motion")
 # [s] at a semidiagonal of 6 m and 9.81 m/s^2, and in proportion to the time scale of the cylinder
 FIRST_STRETCH = 1.0
 # relative change of gravity of the copy whose distance sets the scale; far above rounding, far below 1
 _TRIAL = 1e-6
-# and the largest that still is a copy
+# largest relative change that is still a copy
 _LARGEST = 1e-2
-_SMALLEST_ERROR = 1e-9  # [alpha] no engine is better than its contact
+_SMALLEST_ERROR = 1e-9  # [alpha] smallest error of an engine, that of its contact
 
 Simulate = Callable[[Case, Run], Trace]
 
@@ -70,7 +70,7 @@ class Prediction:
 
 
 def estimated_error(case: Case, run: Run, time_step: float) -> float:
-    """Return the tilt error of an engine in the first second of motion, without running it [alpha].
+    """Tilt error of an engine in the first second of motion, estimated without a run [alpha].
 
     Parameters
     ----------
@@ -90,13 +90,13 @@ def estimated_error(case: Case, run: Run, time_step: float) -> float:
 
 
 def measured_error(case: Case, budget: ErrorBudget) -> float:
-    """Return the tilt error of an engine in the first second, as halving its step has shown it [alpha]."""
+    """Tilt error of an engine in the first second, as measured by halving its step [alpha]."""
     start = float(budget.time[0]) if len(budget.time) else 0.0
     return max(early_rms(case, budget.time, budget.numerics, start), _SMALLEST_ERROR)
 
 
 def close_pass(reference: Trace, contact_resolution: float, length: float) -> Prediction:
-    """Return the prediction for a trajectory whose errors are not known: its first close pass alone."""
+    """Prediction for a trajectory of unknown error: its first close pass alone."""
     return _first_of({"pass": _close_pass(reference, contact_resolution, length)}, reference, length)
 
 
@@ -110,7 +110,7 @@ def predict(
     simulate: Simulate,
     tolerance: float = AGREEMENT,
 ) -> Prediction:
-    """Return the predicted agreement time of engine and `reference`.
+    """Predicted agreement time of engine and `reference`.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def predict(
 
 
 def _first_of(ends: Mapping[str, float], reference: Trace, length: float) -> Prediction:
-    """Return the prediction of what ends the agreement first, by time of the run [s]."""
+    """Prediction of the first cause that ends the agreement, by time of the run [s]."""
     reason = min(ends, key=ends.__getitem__)
     if ends[reason] >= length:
         return Prediction(length=length, reason="")
@@ -146,7 +146,7 @@ def _first_of(ends: Mapping[str, float], reference: Trace, length: float) -> Pre
 
 
 def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> str:
-    """Return the verdict on an agreement time and its prediction.
+    """Verdict on an agreement time and its prediction.
 
     Returns
     -------
@@ -167,13 +167,13 @@ def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> s
 
 
 def early_rms(case: Case, time: FloatArray, difference: FloatArray, start: float) -> float:
-    """Return the RMS of a difference in the first second after `start`, scaled with the cylinder's time."""
+    """RMS of a difference in the first second after `start`, scaled with the time scale of the cylinder."""
     first = (time >= start) & (time <= start + FIRST_STRETCH * time_scale(case))
     return rms(difference[first]) if first.any() else 0.0
 
 
 def time_scale(case: Case) -> float:
-    """Return the time scale of a cylinder over that of one with R = 6 m at 9.81 m/s^2."""
+    """Time scale of a cylinder over that of one with R = 6 m at 9.81 m/s^2."""
     return froude_scale(case.cylinder.semidiagonal, case.gravity).time
 
 
@@ -185,7 +185,7 @@ def _divergence(case: Case, reference: Trace, other: Trace, tolerance: float) ->
 
 def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
     if own.run.loses_at_impact:
-        return length  # it closes as an engine does
+        return length  # the copy closes its base as an engine does
     close = np.asarray(own.passes["minimum_tilt"], dtype=np.float64) < contact_resolution
     times = np.asarray(own.passes["time"], dtype=np.float64)[close]
     return float(min([*times[:1], *landings(own)[:1], length]))

@@ -1,4 +1,4 @@
-"""Comparison: the results of runs beside reference models, or beside one another."""
+"""Comparison: results of runs beside reference models, or beside one another."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """Version of each package and engine that took part."""
+        """Version of each package and engine in use."""
         return dict(self.facts["versions"])
 
     @property
@@ -96,7 +96,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
 
     @cached_property
     def budgets(self) -> Mapping[BudgetKey, ErrorBudget]:
-        """Error budget for each (case, run, reference), where it was asked for."""
+        """Error budget for each (case, run, reference), if requested."""
         entries = {}
         for key, facts in self.facts["budgets"].items():
             case, run, reference = key.split(_SEPARATOR)
@@ -129,7 +129,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
 
     @cached_property
     def causes(self) -> Mapping[str, Sequence[str]]:
-        """Cause of the divergence in each row of a case, "" where there is none: see `findings.cause`."""
+        """Cause of the divergence in each row of a case, "" without one: see `findings.cause`."""
         return {
             name: causes_of(case, self.rows(name), self._traces(name)) for name, case in self.cases.items()
         }
@@ -165,7 +165,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         return {label: trace for (case, label), trace in self.traces.items() if case == name}
 
     def of_case(self, name: str) -> Comparison:
-        """Return the part on one case.
+        """Part of the comparison on one case.
 
         Raises
         ------
@@ -187,7 +187,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         )
 
     def headline(self) -> Mapping[str, Number]:
-        """Return numbers of cases, rows and divergences, and the agreement time."""
+        """Numbers of cases, rows and divergences, and the agreement time."""
         rows = self.summary
         agreed = rows["agreement_time"]
         median = value_if_enough(agreed.median(), len(agreed))
@@ -200,11 +200,11 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
         }
 
     def _about(self) -> Mapping[str, object]:
-        """Return nothing: the facts of all runs have a file of their own."""
+        """No facts here: those of all runs have a file of their own."""
         return {}
 
     def sheets(self) -> Mapping[str, bytes]:
-        """Return the facts, and the small tables as CSV."""
+        """Facts, and the small tables as CSV."""
         sheets = {"summary": self.summary, "matrix": self.matrix, "budget": self.budget_rms}
         if "external" in self.tables:
             sheets["external"] = lists_in_words(self.external)
@@ -214,7 +214,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
 
     @classmethod
     def of_stored(cls, stored: Stored) -> Self:
-        """Return the results whose files are whole.
+        """Comparison from files that are all undamaged.
 
         Raises
         ------
@@ -227,7 +227,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
                 facts={"inputs": stored.manifest.inputs} | plain_json.loads(stored.content(_FACTS)),
                 manifest=stored.manifest,
             )
-            # loading them shows that each is undamaged
+            # loaded to show that each is undamaged
             _ = found.budgets if found.facts["budgets"] else found.traces
         except (ValueError, KeyError) as error:
             why = str(error).partition("\n")[0]
@@ -241,7 +241,7 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class View(Comparison, kind="view"):
-    """Motion to be played, with tables and facts of the comparison of one case.
+    """Motion for the player, with tables and facts of the comparison of one case.
 
     Examples
     --------
@@ -255,7 +255,7 @@ class View(Comparison, kind="view"):
 
     @classmethod
     def of(cls, comparison: Comparison, name: str) -> Self:
-        """Return the view of one case of a comparison.
+        """View of one case of a comparison.
 
         Raises
         ------
@@ -267,7 +267,7 @@ class View(Comparison, kind="view"):
 
     @cached_property
     def comparison(self) -> Comparison:
-        """The comparison of the case, which has the findings."""
+        """Comparison of the case, which has the findings."""
         return Comparison(tables=self.tables, facts=self.facts, manifest=self.manifest)
 
     def findings(self) -> Findings:
@@ -285,7 +285,7 @@ def comparison_of(
     budgets: Mapping[BudgetKey, ErrorBudget] | None = None,
     external: pd.DataFrame | None = None,
 ) -> Comparison:
-    """Return the comparison of these traces, with their summary.
+    """Comparison of these traces, with their summary.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def comparison_of(
     until : float, optional
     external : DataFrame, optional
     """
-    known = {key: trace for key, trace in traces.items() if len(trace.time)}  # the process of others died
+    known = {key: trace for key, trace in traces.items() if len(trace.time)}  # the others died
     tables = {
         "summary": summary,
         "traces": _stack({key: trace.to_frame() for key, trace in known.items()}, "case", "run"),
@@ -323,7 +323,7 @@ def comparison_of(
 
 
 def _of_today(tables: Mapping[str, pd.DataFrame], release: str) -> Mapping[str, pd.DataFrame]:
-    """Tables of a folder as they are today: 0.3 kept the verdicts in the summary, and had fewer columns.
+    """Tables of a folder in the present form: 0.3 had the verdicts in the summary, and fewer columns.
 
     Raises
     ------
@@ -349,7 +349,7 @@ def _of_today(tables: Mapping[str, pd.DataFrame], release: str) -> Mapping[str, 
 
 
 def _facts_with_source(case: Case) -> Mapping[str, object]:
-    """Facts of a case, whose samples stand in a table, by which it is made again."""
+    """Facts of a case whose samples are in a table, sufficient to rebuild it."""
     facts, motion = case_facts(case), case.motion
     if motion is not None and motion.source:
         facts["motion"]["source"] = motion.source
@@ -379,7 +379,7 @@ def _excitation(cases: Mapping[str, Case]) -> pd.DataFrame:
 
 
 def _stack(tables: Mapping[Any, pd.DataFrame], *names: str) -> pd.DataFrame:
-    """One table below the other, each with its key in the first columns."""
+    """Tables one below the other, each with its key in the first columns."""
     if not tables:
         return pd.DataFrame(columns=list(names))
     table: pd.DataFrame = pd.concat(tables, names=list(names)).reset_index(list(names)).reset_index(drop=True)

@@ -40,7 +40,7 @@ from ..metrics.pair import (
 from .peak_error import NO_ERROR, PeakError
 from .prediction import Prediction, close_pass, verdict
 
-KEYS = ["case", "run", "reference"]  # columns that name a row in each table
+KEYS = ["case", "run", "reference"]  # columns that identify a row in each table
 # name: (unit, meaning); the order is that of the table
 SUMMARY_COLUMNS = column_meanings("rockwobble.compare", "summary")
 _UNKNOWN: Row = {**dict.fromkeys(SUMMARY_COLUMNS, math.nan), "error_source": ""}
@@ -61,7 +61,7 @@ def summary_row(
     reference_time: float | None = None,
     error: PeakError = NO_ERROR,
 ) -> Row:
-    """Return all columns of the summary for one run and one reference.
+    """All columns of the summary for one run and one reference.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def _divergence(trial: Trace, agreement: Agreement, prediction: Prediction) -> s
     found = verdict(agreement.length, agreement.diverged, prediction.length, prediction.reason)
     if found != "earlier":
         return found if agreement.tested else "too little motion"
-    # no reduced model knows of walls, so none predicts what they do
+    # no reduced model has walls, so none predicts their effect
     return "after it touched a wall" if trial.first("wall_contact") <= agreement.end else found
 
 
@@ -174,7 +174,7 @@ def external_row(
     *,
     until: float | None = None,
 ) -> Row:
-    """Row and verdict of an external trajectory, of whose steps and errors nothing is known.
+    """Row and verdict of an external trajectory, with steps and errors unknown.
 
     Its uplift is compared as its samples show it: see `external.verdict.uplift_differences`. Its peak is
     compared with that of the reference while the file lasts.
@@ -198,7 +198,7 @@ def external_row(
 
 
 def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
-    """Return the row of a run that left no samples: what is not known is NaN."""
+    """Row of a run that left no samples, with NaN for unknown numbers."""
     return {
         **_UNKNOWN,
         **_methods(case, name, reference, label, trial),
@@ -228,21 +228,21 @@ def rows_of(table: pd.DataFrame) -> Iterator[SummaryRow]:
 
 
 def own_rows(summary: pd.DataFrame) -> pd.DataFrame:
-    """The row of each run against the model of its support, or else its first row."""
+    """Row of each run against the model of its support, or else its first row."""
     own = summary["reference"] == summary["support"].map(lambda support: str(Run(None, support).own_model))
     keys = summary["case"] + "\n" + summary["run"]
     alone = ~keys.isin(keys[own]) & ~keys.duplicated()
     return summary[own | alone]
 
 
-# columns of the agreement matrix, likewise
+# columns of the agreement matrix: (unit, meaning)
 MATRIX_COLUMNS = column_meanings("rockwobble.compare", "matrix")
 
 
 def agreement_matrix(
     cases: Mapping[str, Case], traces: Mapping[tuple[str, str], Trace], *, until: float | None = None
 ) -> pd.DataFrame:
-    """Return the differences of each motion of a case from every other on the same support.
+    """Differences of each motion of a case from every other on the same support.
 
     Only where two engines or more have run: what one engine differs from its model by is in the summary.
 
@@ -276,7 +276,7 @@ def _rows(
 def _difference(
     case: Case, trial: Trace, reference: Trace, until: float | None, allowance: float = 0.0
 ) -> tuple[Pair, Agreement, Row]:
-    """Return two motions on one time axis, their agreement, and the columns that every two motions have."""
+    """Two motions on one time axis, their agreement, and the columns common to any two motions."""
     cylinder = case.cylinder
     whole = make_pair(cylinder, reference, trial, until=case.length)  # a fall after it multiplies differences
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)

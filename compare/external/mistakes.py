@@ -1,4 +1,4 @@
-"""Likely mistakes in a trajectory, of units, order of columns, clock and axes, and what takes them back.
+"""Likely mistakes in a trajectory, of units, order of columns, clock and axes, with their corrections.
 
 A table of plain ones is tried: another reading of the columns, another clock, the axes turned by quarter
 turns or mirrored, and of the path also its unit and its origin. One is named only where the trajectory
@@ -27,8 +27,8 @@ QUATERNION_ORDERS = {
     "quaternion_inverse": ("qw", "-qx", "-qy", "-qz"),
     "z_reversed": ("-qx", "qw", "qz", "-qy"),
 }
-# what brings a lean into the axes of the reference: a turn by the angle, of its mirror image if mirrored. In
-# planar motion both do the same, and the turn is named
+# transformation of a tilt vector to the axes of the reference: a rotation, after a mirror image if mirrored.
+# In planar motion both are the same, and the rotation is named
 FRAMES: Mapping[tuple[float, bool], str] = {
     (math.pi, False): "turned_back",
     (0.5 * math.pi, False): "turned_clockwise",
@@ -76,10 +76,10 @@ WORDS: Mapping[str, str | tuple[str, str]] = {
     ENERGY_LOSS: "it loses energy, {percent:.2g} % of its tilt from each swing to the next",
     ROLLING_RESISTANCE: "as with a rolling resistance of {value:.2g} m",
 }
-# how much more motion must agree without the mistake, and how far it must lean while it does, in bounds
+# factor by which the agreement must be longer without the mistake, and tilt in it, in bounds
 MORE_MOTION, LEANING = 4.0, 5.0
-LONG = 3.0  # how long it must agree, over the time scale of rocking, or up to the end
-SHORTEST_OFFSET = 0.01  # offset of a clock that is named, over the time scale
+LONG = 3.0  # least agreement over the time scale of rocking, unless to the end
+SHORTEST_OFFSET = 0.01  # smallest offset of a clock that is named, over the time scale
 # smallest and largest relative difference of a time scale that is named
 SMALLEST_RATE, LARGEST_RATE = 2.5e-3, 0.15
 # share of the tilt difference of a release left by the right clock: another tilt or spin leaves a fifth
@@ -118,7 +118,7 @@ class Mistake:
     def words(self) -> str:
         """The mistake in words."""
         value, concerns = self.value, self.concerns
-        words = WORDS.get(self.code, self.code)  # an older result may name another
+        words = WORDS.get(self.code, self.code)  # an older result may name another code
         its = f"its {concerns} {'are' if ' and ' in concerns or concerns == 'axes' else 'is'}"
         size, weight = 100.0 * (value**2 - 1.0), 100.0 * (value**-2 - 1.0) if value else math.nan
         return (words if isinstance(words, str) else words[value > 1.0]).format(
@@ -128,7 +128,7 @@ class Mistake:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """Correction of a mistake: of the columns, or of the motion that they tell."""
+    """Correction of a mistake: of the columns, or of the motion in them."""
 
     mistake: Mistake
     values: Callable[[Values], Values] = field(default=lambda values: values)
@@ -137,7 +137,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Explanation:
-    """Mistakes that explain a difference all together, if any, and what is left without them."""
+    """Mistakes that together explain a difference, if any, and the difference without them."""
 
     changes: tuple[Change, ...]
     left: Difference
@@ -148,12 +148,12 @@ class Explanation:
         return tuple(change.mistake for change in self.changes)
 
 
-Read = Callable[[Values], Motion | None]  # the motion that columns tell; None where they tell none
+Read = Callable[[Values], Motion | None]  # motion in the columns; None where they hold none
 Changed = tuple[tuple[Change, ...], Motion]  # changes, and the motion after them
 
 
 def correct(values: Values, read: Read, changes: Sequence[Change]) -> Motion | None:
-    """Return the motion of columns after some changes."""
+    """Motion in the columns after some changes."""
     for change in changes:
         values = change.values(values)
     motion = read(values)
@@ -167,7 +167,7 @@ def _with_changes(motion: Motion, changes: Sequence[Change]) -> Motion:
 
 
 def readings(values: Values) -> Iterator[Change]:
-    """Yield the mistakes in units, order and vertical axis of columns that change the pose."""
+    """Mistakes in units, order and vertical axis of columns, with the motions without them."""
 
     def in_unit(code: str, concerns: str, names: Sequence[str], factor: float) -> Change:
         def correct(given: Values) -> Values:
@@ -245,7 +245,7 @@ def explanations(values: Values, read: Read, reference: Reference) -> Iterator[E
 
 
 def _tilts_explained(values: Values, read: Read, reference: Reference, motion: Motion) -> Iterator[Changed]:
-    """Yield a change with which the tilt follows the reference, the closest first; last none at all."""
+    """Changes with which the tilt follows the reference, the closest first; no change last."""
     before = reference.difference(motion)
     if before.tilt.differs:
         others = [(change, read(change.values(values))) for change in readings(values)]
@@ -257,18 +257,18 @@ def _tilts_explained(values: Values, read: Read, reference: Reference, motion: M
             fitted = reference.is_free and change.mistake.code in ("time_scale", "time_offset")
             if _follows(reference, before, after, other, fitted=fitted):
                 more, frame = next(_azimuths_explained(values, read, reference, (change,), other))
-                # two motions that differ may have tilts that agree longer by chance, but not azimuths, too
+                # tilts of two different motions may agree longer by chance, but not azimuths, too
                 if after.azimuth is None or not after.azimuth.differs or more or frame is not None:
                     yield (change,), other
             elif fitted:
-                break  # no clock makes another motion the same
+                break  # no clock makes one motion of another
     yield (), motion
 
 
 def _follows(
     reference: Reference, before: Difference, after: Difference, motion: Motion, *, fitted: bool
 ) -> bool:
-    """Whether the tilts agree for so much longer that it cannot be by chance."""
+    """Whether the tilts agree for longer than chance allows."""
     if after.agreed_peak < LEANING * after.tilt.bound * reference.alpha:
         return False
     # over as much of the run as was compared before
@@ -281,7 +281,7 @@ def _follows(
 
 
 def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
-    """Yield an offset of the clock, by the first passage of half the peak, and the rate of a free motion."""
+    """Candidate clocks: an offset by the first passage of half the peak, and the rate of a free motion."""
 
     def size(other: Motion, model: Motion) -> float:
         return (
@@ -298,7 +298,7 @@ def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
         for width in (0.1, 0.03, 0.01, 0.003, 0.001):
             tried = offset + width * unit * np.linspace(-1.0, 1.0, 7)
             offset = float(min(tried, key=lambda at: size(motion.with_clock(offset=float(at)), whole)))
-        # a clock that is off by less than a sample cannot be told from what a model and noise make of samples
+        # an offset below one sample is within the interpolation and noise of the samples
         if abs(offset) > max(motion.step, SHORTEST_OFFSET * unit):
             mistake = Mistake(code="time_offset", concerns="time", value=offset)
             yield Change(mistake=mistake, motion=partial(Motion.with_clock, offset=offset))
@@ -316,10 +316,10 @@ def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
 def _azimuths_explained(
     values: Values, read: Read, reference: Reference, changes: tuple[Change, ...], motion: Motion
 ) -> Iterator[tuple[tuple[Change, ...], tuple[float, bool] | None]]:
-    """Yield columns read otherwise, or axes, with which the azimuth follows; last none at all."""
+    """Other readings of columns, or axes, with which the azimuth follows; no change last."""
     before = reference.difference(motion).azimuth
     if before is not None and before.differs:
-        # columns are read otherwise once
+        # columns have at most one other reading
         if all(change.mistake.concerns == "time" for change in changes):
             for one in readings(values):
                 if one.mistake.concerns in ("quaternion", "azimuth"):
@@ -335,7 +335,7 @@ def _azimuths_explained(
 def _path_explained(
     reference: Reference, motion: Motion, axes: tuple[float, bool] | None
 ) -> tuple[Change, ...]:
-    """The fewest changes that explain a path; what is wrong with the axes of the lean is expected."""
+    """Fewest changes that explain a path; expected are those of the axes of the tilt vector."""
     before = reference.difference(motion)
     part = before.path
     if motion.path is None or part is None or not (part.differs or axes):
@@ -354,14 +354,14 @@ def _path_explained(
             changes += (_origin(reference, _with_changes(motion, changes), before.covered),)
         left = reference.difference(_with_changes(motion, changes)).path
         if left is not None and not left.differs and (explains(part, left) or not part.differs):
-            # a constant offset has three numbers to fit: it comes after what has none
+            # a constant offset fits three numbers, so it is tried after changes that fit none
             count = (frame not in (None, axes)) + len(reading) + 1.5 * moved
             passing.append((count, left.size, changes))
     return min(passing, key=lambda one: one[:2])[2] if passing else ()
 
 
 def _of_path(reading: Change) -> Change:
-    """Return the change of the path alone that corresponds to another reading of its columns."""
+    """Change of the path alone that corresponds to another reading of its columns."""
     mistake = replace(reading.mistake, concerns="path")
 
     def correct(motion: Motion) -> Motion:
@@ -374,7 +374,7 @@ def _of_path(reading: Change) -> Change:
 
 
 def _origin(reference: Reference, motion: Motion, end: float) -> Change:
-    """Return the change that corrects another origin of the path."""
+    """Change that corrects another origin of the path."""
     wanted, own = on_samples_of(reference.motion, motion)
     assert wanted.path is not None
     assert own.path is not None
@@ -389,7 +389,7 @@ def _origin(reference: Reference, motion: Motion, end: float) -> Change:
 
 
 def _spin_explained(reference: Reference, motion: Motion) -> tuple[Change, ...]:
-    """The steady spin about the axis that explains what turn is left, if one does."""
+    """Steady spin about the axis that explains the remaining twist, if there is one."""
     before = reference.difference(motion)
     if before.twist is None or not before.twist.differs:
         return ()

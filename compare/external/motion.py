@@ -1,4 +1,4 @@
-"""A motion as the lean of its axis and the path of its mass centre, and its difference from a reference.
+"""Motion as the tilt vector of its axis and the path of its mass centre, and its difference from a reference.
 
 The lean sin(theta) exp(i phi) is smooth through the upright position, where the azimuth phi means nothing and
 in planar motion jumps by pi.
@@ -25,14 +25,14 @@ Complex = NDArray[np.complex128]
 
 # normal distribution: median of the absolute value over the standard deviation
 MEDIAN_OF_NORMAL = 0.6745
-FEWEST_SCATTERED = 12  # samples without which their scatter is not known
+FEWEST_SCATTERED = 12  # least number of samples for an estimate of their scatter
 SAME_TIME = 1e-9  # samples at one time up to rounding [s]
 SAME_STEP = 1e-6  # relative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Motion:
-    """The samples of a motion.
+    """Samples of a motion.
 
     Attributes
     ----------
@@ -89,13 +89,13 @@ class Motion:
 
 
 def motion_at(time: Array, tilt: Array, azimuth: Array | None, path: Array | None = None) -> Motion:
-    """Return the motion of tilts and azimuths (n,) [rad], NaN at rest; the azimuth may be unknown."""
+    """Motion of tilts and azimuths (n,) [rad], NaN at rest; the azimuth may be unknown."""
     lean = None if azimuth is None else np.sin(tilt) * np.exp(1j * np.nan_to_num(azimuth))
     return Motion(time=time, tilt=tilt, lean=lean, path=path)
 
 
 def on_samples_of(reference: Motion, motion: Motion) -> tuple[Motion, Motion]:
-    """Return both at the samples of the sparser, as far as both reach: reference, motion."""
+    """Reference and motion at the samples of the sparser, as far as both reach."""
     sparser = motion if motion.step > (1.0 + SAME_STEP) * reference.step else reference
     first, last = (pick(reference.time[at], motion.time[at]) for pick, at in ((max, 0), (min, -1)))
     within = (sparser.time >= first - SAME_TIME) & (sparser.time <= last + SAME_TIME)
@@ -105,7 +105,7 @@ def on_samples_of(reference: Motion, motion: Motion) -> tuple[Motion, Motion]:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Pose:
-    """The poses of n samples.
+    """Poses of n samples.
 
     Attributes
     ----------
@@ -130,12 +130,12 @@ class Pose:
 
     @property
     def lean(self) -> Complex | None:
-        """Lean, shape (n,)."""
+        """Tilt vector, shape (n,)."""
         return self.axis[:, 0] + 1j * self.axis[:, 1] if self.azimuth_known else None
 
 
 def pose_of(values: Values, *, base_radius: float, mass_centre_height: float, recess: bool = True) -> Pose:
-    """Return the poses that columns tell: by quaternions, else tilt and azimuth, else by the mass centre [m].
+    """Poses in columns: from quaternions, else tilt and azimuth, else the mass centre [m].
 
     A cylinder in a `recess` has its mass centre at D - b = R sin(theta - alpha) from the vertical through the
     rim and z = R cos(theta - alpha), equations (8) and (10). Elsewhere only the height tells the tilt.
@@ -149,14 +149,14 @@ def pose_of(values: Values, *, base_radius: float, mass_centre_height: float, re
             2.0 * (y * z - w * x) / size,
             1.0 - 2.0 * (x * x + y * y) / size,
         ]
-        # q and -q are one pose: both change the half angle by half a turn
+        # q and -q are one pose: a rotation by a whole turn changes the sign
         twist = np.unwrap(2.0 * np.arctan2(z, w))
         twist -= 2.0 * np.pi * np.round(twist[0] / (2.0 * np.pi))
         return Pose(axis=np.column_stack(columns), twist=twist, position=position, azimuth_known=True)
     if "tilt" in values:
         tilt, known = values["tilt"], "azimuth" in values
         azimuth = values.get("azimuth", np.zeros_like(tilt))
-        # a lean by -theta at phi is one by theta at phi + pi: the axis knows only one of them
+        # tilt -theta at phi is tilt theta at phi + pi: the axis has only one of them
         azimuth = np.where(np.isnan(azimuth) & (tilt == 0.0), 0.0, azimuth)
     else:
         assert position is not None  # a table has one of the three
@@ -177,7 +177,7 @@ def pose_of(values: Values, *, base_radius: float, mass_centre_height: float, re
 
 
 def scatter(time: Array, values: Array) -> float:
-    """Standard deviation of the noise of the roughest column of values (n, k); 0 where too few tell it.
+    """Standard deviation of the noise of the roughest column of values (n, k); 0 for too few samples.
 
     Each sample is compared with the cubic through its four neighbours, at their own times (n,), so that
     uneven samples do no harm. The median keeps the few samples out at which a pass by the upright position
@@ -193,7 +193,7 @@ def scatter(time: Array, values: Array) -> float:
         guess += weight[:, None] * values[at : len(time) - 4 + at]
         gain += weight * weight
     apart = np.abs(values[2:-2] - guess) / np.sqrt(gain)[:, None]
-    # samples equal to their neighbours are at rest, and say nothing of the noise in motion
+    # samples equal to their neighbours are at rest, without the noise of motion
     moving = apart[np.isfinite(apart).all(axis=1) & (apart > 0.0).any(axis=1)]
     if len(moving) < FEWEST_SCATTERED:
         return 0.0
@@ -201,7 +201,7 @@ def scatter(time: Array, values: Array) -> float:
 
 
 def exceeds(time: Array, value: Array, level: float, power: float) -> float:
-    """First time at which a value exceeds a level [s], inf if never; its root is linear between samples."""
+    """First time at which a value exceeds a level [s], inf if never; linear between samples."""
     i = int(np.argmax(value > level))
     if i == 0:
         return float(time[0]) if value[0] > level else math.inf
@@ -217,17 +217,18 @@ AZIMUTH_BOUND = math.radians(3.0)
 PATH_BOUND = 0.01
 # smallest significant difference, in standard deviations of the noise
 ABOVE_NOISE = 5.0
-# noise along the lean against that across it: that of a mass centre is larger across, by R/h at tan alpha 1
+# ratio of the noise along the tilt vector to that across it: a mass centre's is larger across, by R/h at tan
+# alpha 1
 BOTH_DIRECTIONS = 1.4
-# samples without which azimuth and path are not compared
+# least number of samples for a comparison of azimuth and path
 FEWEST_COMPARED = 5
-# largest share of a difference that its explanation may leave
+# largest share of a difference that may remain after its explanation
 LEFT_OVER = 1.0 / 3.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """One quantity, compared.
+    """Comparison of one quantity.
 
     Attributes
     ----------
@@ -251,7 +252,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
-    """A motion compared with a reference.
+    """Comparison of a motion with a reference.
 
     Attributes
     ----------
@@ -336,7 +337,7 @@ class Reference:
         start = max(self.start, float(model.time[0]))
         tilt, end = self._tilt(model, trial)
         covered = start + BEFORE_DIVERGENCE * (end - start) if tilt.differs else end
-        # compared to a sample: rounding must not take the last one away
+        # compared to a sample, so that rounding does not drop the last one
         within, agreed = model.time <= covered + SAME_TIME, model.time <= end + SAME_TIME
         return Difference(
             start=start,
@@ -355,13 +356,13 @@ class Reference:
         )
 
     def leaning(self, model: Motion, trial: Motion, within: Mask) -> Mask:
-        """Return the samples at which azimuths are compared: where both motions tilt far enough."""
+        """Samples at which azimuths are compared: where both motions tilt far enough."""
         least = max(self.least_lean * float(model.tilt[within].max(initial=0.0)), ABOVE_NOISE * trial.noise)
         counts: Mask = within & (model.tilt > least) & (trial.tilt > least)
         return counts
 
     def noise_allowance(self, noise: float) -> float:
-        """Return the allowance for noise [rad] in the bound of the tilt [alpha]; 0 where it is small."""
+        """Allowance for noise [rad] in the bound of the tilt [alpha]; 0 where it is small."""
         added = ABOVE_NOISE * noise / self.alpha
         return added if added > 0.1 * self.tilt_bound else 0.0
 
@@ -382,7 +383,7 @@ class Reference:
         product = trial.lean[counts] * model.lean[counts].conj()
         apart, weight = np.abs(np.angle(product)), np.abs(product)
         size = math.sqrt(float(np.sum(weight * apart**2) / np.sum(weight)))
-        # the mean of few samples scatters itself, and noise is not the same in both directions
+        # the mean of few samples scatters itself, and noise differs with direction
         few = 1.0 + 3.0 / math.sqrt(2.0 * len(apart))
         blurred = BOTH_DIRECTIONS * trial.noise / math.sqrt(float(np.mean(weight))) * few
         beyond = apart > self.azimuth_bound + ABOVE_NOISE * trial.noise / np.sqrt(weight)
@@ -415,6 +416,6 @@ def explains(before: Part, after: Part | None) -> bool:
 
 
 def _part(time: Array, size: float, bound: float, beyond: Mask) -> Part:
-    """A mean that is above its bound differs from the first sample that is beyond its own, if one is."""
+    """Comparison of a quantity by its mean; a difference begins at the first sample beyond its own bound."""
     first = float(time[np.argmax(beyond)]) if size > bound else math.nan
     return Part(first_time=first, size=size, bound=bound)

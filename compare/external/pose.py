@@ -1,4 +1,4 @@
-"""From the columns of an external trajectory to poses at its own samples: checked, and unwrapped."""
+"""Columns of an external trajectory as poses at its own samples: checked, and unwrapped."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from rockwobble.models import Case, RockingBody
 from .motion import Pose, pose_of, scatter
 from .table import POSITION, QUATERNION, Array, Mask, Table, name_list
 
-# tilt below which the cylinder stands, in units of alpha; a measured azimuth means nothing there
+# tilt below which the cylinder stands, in units of alpha; a measured azimuth has no meaning there
 _STANDS = 1e-4
-# and in standard deviations of the noise: of 10,000 samples at rest not one is expected above it
+# the same in standard deviations of the noise: of 10,000 samples at rest none is expected above it
 _ABOVE_NOISE = 5.0
-# a step this much longer than the usual one is a gap
+# ratio to the usual step beyond which a step is a gap
 _GAP = 2.5
 # times since 1970 in these units, from 2001 to 2286, begin between this [s] and ten times it
 _SINCE_1970 = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
@@ -28,17 +28,17 @@ _COARSE = 0.5
 _SHORTEST = 2e-3
 # tolerance of the length of a quaternion: printed digits, not another convention
 _UNIT_LENGTH = 1e-2
-# tilts of both kinds that differ by more come from two conventions, not from rounding [rad]
+# [rad] larger differences of the two tilts come from two conventions, not from rounding
 _SAME_TILT = 0.01
-# twist at the start beyond which the last number of the quaternion must be its first [rad]
+# [rad] twist at the start beyond which the scalar of the quaternion may be its last number
 _ANOTHER_ORDER = 0.75 * math.pi
-# share of R by which the distance of mass centre and rim may be off: rolled out, or measured roughly
+# share of R by which the distance of mass centre and rim may differ: by rolling out, or a rough measurement
 _FROM_RIM = 0.2
-# scatter that is no noise any more, in units of alpha: the samples are of no smooth motion
+# scatter beyond noise, in units of alpha: the samples are of no smooth motion
 _ROUGH = 0.02
-# the tilt alone of a cylinder that stands is the length of two components: what it scatters of what they do
+# scatter of the tilt alone of a standing cylinder, the length of two components, over that of each
 _OF_A_LENGTH = math.sqrt(2.0 - 0.5 * math.pi)
-# twist at the start that is noted [rad]
+# [rad] twist at the start above which it is noted
 _TWISTED = math.radians(1.0)
 
 
@@ -86,14 +86,14 @@ class Poses:
     notes: tuple[str, ...]
 
     def subset(self, chosen: NDArray[np.intp]) -> Poses:
-        """Return the chosen samples alone."""
+        """Poses at the chosen samples alone."""
         names = ("time", "tilt", "axis", "rolling_angle", "followed", "twist", "position")
         arrays = {name: getattr(self, name) for name in names}
         return replace(self, **{name: each[chosen] for name, each in arrays.items() if each is not None})
 
 
 def poses_of(table: Table, case: Case, *, noise: float | None = None, time_offset: float = 0.0) -> Poses:
-    """Return the poses of a table; see `External` for noise [rad] and time_offset [s].
+    """Poses of a table; see `External` for noise [rad] and time_offset [s].
 
     Raises
     ------
@@ -155,7 +155,7 @@ def poses_of(table: Table, case: Case, *, noise: float | None = None, time_offse
 
 
 def unwrapped(axis: Array, leans: Mask) -> tuple[Array, Mask]:
-    """Return the azimuth (n,) of the axis (n, 3) without jumps, and whether each change is certain.
+    """Azimuth (n,) of the axis (n, 3) without jumps, and whether each change is certain.
 
     It means something where the axis `leans` (n,); elsewhere the angle waits. Between two samples it takes
     the shorter way round, unless that is more than a quarter turn: then upright was passed between them, and
@@ -180,13 +180,13 @@ def unwrapped(axis: Array, leans: Mask) -> tuple[Array, Mask]:
             change[at] += 2.0 * np.pi * way
     followed[tilted[1:][guessed]] = False
     angles = azimuth[0] + np.concatenate([[0.0], np.cumsum(change)])
-    # standing, the angle is that of the last lean; before the first, of the first
+    # at rest the angle of the last tilt vector; before the first, that of the first
     last = np.searchsorted(tilted, np.arange(count), side="right") - 1
     return angles[np.maximum(last, 0)], followed
 
 
 def _from_start(table: Table) -> tuple[Array, list[str]]:
-    """Return the times of a table [s], from the first where they are since 1970, and notes on them."""
+    """Times of a table [s], from the first where they are since 1970, and notes on them."""
     time = table.complete("time")
     for unit, factor in _SINCE_1970.items():
         if _IN_2001 <= time[0] / factor < 10.0 * _IN_2001:
@@ -251,7 +251,7 @@ def _checked_quaternions(table: Table, axis: Array, twist: Array) -> list[str]:
 
 
 def _check_positions(table: Table, pose: Pose, cylinder: RockingBody) -> None:
-    """Refuse a mass centre that is not R from the rim."""
+    """Refuse a mass centre whose distance from the rim is not R."""
     assert pose.position is not None
     x, y, height = pose.position.T
     from_rim, radius = np.hypot(np.hypot(x, y) - cylinder.base_radius, height), cylinder.semidiagonal

@@ -40,7 +40,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Rows = Sequence[tuple[int, list[str]]]  # number and cells of each line
-Stated = dict[str, tuple[int, str | None]]  # place and unit of each known column, by name
+Stated = dict[str, tuple[int, str | None]]  # position and unit of each known column, by name
 Values = dict[str, Array]  # columns of one run by name, in SI units and radians
 
 QUATERNION = ("qw", "qx", "qy", "qz")
@@ -76,7 +76,7 @@ ENDS = {
         for at, name in enumerate(names)
     },
 }
-# columns that an option names, by their number, in this order
+# columns named by an option, by their number, in this order
 IN_ORDER = {
     len(names): names
     for names in (
@@ -93,7 +93,7 @@ FEWEST_SAMPLES = 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
-    """The samples of one run in a file.
+    """Samples of one run in a file.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ class Table:
     lost: int = 0
 
     def require(self, holds: Mask, reason: str, *values: Array | float) -> None:
-        """Refuse the first sample where something (n,) does not hold, with the number of its line.
+        """Refuse the first sample where a condition (n,) does not hold, with its line number.
 
         Raises
         ------
@@ -129,14 +129,14 @@ class Table:
             raise ValueError(f"{self.name}, line {self.lines[at]}: {reason.format(*there)}")
 
     def complete(self, column: str, where: Mask | None = None) -> Array:
-        """Return a column that must have a value in each sample, or `where` (n,) is true."""
+        """Column with a value in each sample, or in those where `where` (n,) is true."""
         known = ~np.isnan(self.values[column])
         self.require(known if where is None else known | ~where, f"{column} is missing")
         return self.values[column]
 
 
 def name_list(names: Sequence[str]) -> str:
-    """Return names for a message, as many as fit and how many more there are.
+    """Names for a message, as many as fit and the number of others.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def name_list(names: Sequence[str]) -> str:
 
 
 def read_tables(path: Path, angle_unit: str | None = None, columns: Sequence[str] = ()) -> dict[str, Table]:
-    """Read the runs of a CSV file by name, "" where it has no column `run`.
+    """Runs of a CSV file by name, "" where it has no column `run`.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def _table(
 
 
 def _rows(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
-    """Yield number and cells of each line that is neither empty nor a comment."""
+    """Number and cells of each line that is neither empty nor a comment."""
     mark = ""
     for number, line in enumerate(lines, start=1):
         text = line.strip()
@@ -214,13 +214,13 @@ def _rows(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
 
 
 def _title(text: str) -> tuple[str, str | None]:
-    """Return name and unit of a title, which stands in brackets; None without one."""
+    """Name and unit of a title, the unit in brackets; None without one."""
     match = re.fullmatch(r"(.*?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?", text.strip())
     return (match[1], match[2]) if match else (text, None)
 
 
 def _chosen(file: str, rows: Rows, columns: Sequence[str]) -> tuple[list[str], Stated, int]:
-    """Return the header, place and unit of the columns that an option names, and the number of rows above.
+    """Header, position and unit of the columns named by an option, and the number of rows above.
 
     Raises
     ------
@@ -255,7 +255,7 @@ def _chosen(file: str, rows: Rows, columns: Sequence[str]) -> tuple[list[str], S
 
 
 def _named(file: str, rows: Rows) -> tuple[list[str], Stated, int]:
-    """Return the header, place and unit of its columns by name, and the number of rows above its samples."""
+    """Header, position and unit of its columns by name, and the number of rows above its samples."""
     if not rows:
         raise ValueError(f"the trajectory {file} is empty")
     header = rows[0][1]
@@ -268,7 +268,7 @@ def _named(file: str, rows: Rows) -> tuple[list[str], Stated, int]:
         named += [(name, at) for name in ends if name not in exact]
     known: Stated = {}
     for name, at in named:
-        # some components of a quaternion or place without the others are other quantities
+        # some components of a quaternion or position without the others are other quantities
         group = next((each for each in (QUATERNION, POSITION) if name in each), (name,))
         if name not in exact and not set(group) <= {each for each, _ in named}:
             continue
@@ -291,7 +291,7 @@ def _named(file: str, rows: Rows) -> tuple[list[str], Stated, int]:
 
 
 def _factor(file: str, name: str, given: str | None, angle_unit: str | None) -> float:
-    """Return the factor of a column to SI units."""
+    """Factor of a column to SI units."""
     unit = SILENT_UNITS.get(name, angle_unit) if given is None else given
     if unit is None:
         raise ValueError(

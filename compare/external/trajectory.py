@@ -1,4 +1,4 @@
-"""A trajectory from a shake table or another code as one more run of a comparison."""
+"""Trajectory from a shake table or another code as one more run of a comparison."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from .motion import SAME_TIME, Motion, motion_at
 from .pose import Poses, poses_of
 from .table import Array, Table, name_list, read_tables
 
-# a measurement of a cylinder on its side may be off by this [rad]
+# [rad] tolerance of a measured tilt of a cylinder on its side
 _FALLEN = OVERTURNED_TILT - 0.01
-# tilt by which a file that is read otherwise may be off at the start, in units of alpha
+# tolerance of the tilt at the start in another reading of a file, in units of alpha
 _SAME_START = 0.1
 
 
@@ -82,7 +82,7 @@ class External(CompactRepr):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Measurement(CompactRepr):
-    """Quantities that a file of an external trajectory gave: the source of its trace.
+    """Quantities measured in the file of an external trajectory: the source of its trace.
 
     The trace is at the sample times of the reduced models. What the file does not give is NaN: energy,
     contact resolution; the twist without quaternions; rolling angle, contact point and mass centre with the
@@ -109,16 +109,16 @@ class Measurement(CompactRepr):
     displacement: Array
 
     def quantities(self) -> Mapping[str, Array]:
-        """Return the displacement: a file tells neither energies nor forces."""
+        """The displacement: a file has neither energies nor forces."""
         return {"displacement": self.displacement}
 
     def assumptions(self, until: float) -> None:
-        """Return nothing: a file does not tell."""
+        """Unknown: a file has no demands."""
         return
 
 
 def measurement(trace: Trace) -> Measurement:
-    """Return the quantities that the file of an external trajectory gave.
+    """Measured quantities in the file of an external trajectory.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def measurement(trace: Trace) -> Measurement:
 
 
 def external_motion(trace: Trace) -> Motion:
-    """Return the motion compared: tilt, azimuth, also where it follows from the path, and path."""
+    """Motion for the comparison: tilt, azimuth, also where it follows from the path, and path."""
     poses = measurement(trace).poses
     azimuth = (
         trace.rolling_angle if np.isfinite(trace.rolling_angle).any() or "azimuth" in poses.given else None
@@ -142,13 +142,13 @@ def external_motion(trace: Trace) -> Motion:
 
 
 def twist_since_start(trace: Trace) -> Array | None:
-    """Return the turn about the axis since the start, shape (n,) [rad]; None where it is not known."""
+    """Twist since the start, shape (n,) [rad]; None where unknown."""
     turn: Array = trace.twist - trace.twist[0]
     return turn if np.isfinite(turn).all() else None
 
 
 def read_trajectory(external: External | str | Path, case: Case) -> Trace:
-    """Read an external trajectory of the case that it answers.
+    """Read an external trajectory of a case.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def read_trajectory(external: External | str | Path, case: Case) -> Trace:
 
 
 def trajectory_of(table: Table, given: External, case: Case) -> Trace:
-    """Return the trajectory that a table holds; see `read_trajectory`."""
+    """Trajectory in a table; see `read_trajectory`."""
     poses = poses_of(table, case, noise=given.noise, time_offset=given.time_offset)
     start = int(np.argmax(poses.time > -0.5 * float(poses.time[1] - poses.time[0])))
     upright = (np.arange(len(poses.time)) != start) | (poses.tilt < _FALLEN)
@@ -228,7 +228,7 @@ def trajectory_of(table: Table, given: External, case: Case) -> Trace:
 def read_trajectories(
     external: Sequence[External | str | Path], cases: Sequence[Case], *, taken: Collection[str] = ()
 ) -> dict[tuple[str, str], Trace]:
-    """Read the trajectories of a case, by its name and their labels; those in `taken` are of other runs.
+    """Trajectories of a case, by its name and their labels; labels in `taken` are of other runs.
 
     Raises
     ------
@@ -248,12 +248,12 @@ def read_trajectories(
 
 
 def _from_start_to_end(poses: Poses, start: int, length: float) -> Poses:
-    """Cut to the run, and at the fall where there is one."""
+    """Samples cut to the run, and at the fall where there is one."""
     chosen = np.arange(start, len(poses.time))
     tilt = poses.tilt[chosen]
     falls = np.flatnonzero((tilt[:-1] >= _FALLEN) & (np.diff(tilt) <= 0.0))
     landed = int(falls[0]) if len(falls) else len(chosen) - 1
-    # one sample beyond the end, to interpolate up to it
+    # one sample beyond the end, for interpolation up to it
     last = min(int(np.searchsorted(poses.time[chosen], length - SAME_TIME)), len(chosen) - 1)
     # a fall that began before the end is followed to the ground
     falling = tilt[landed] >= _FALLEN and bool((np.diff(tilt[last : landed + 1]) > 0.0).all())
@@ -268,15 +268,15 @@ def _facts(poses: Poses) -> Iterator[Diagnostic]:
 
 
 class Uplift(NamedTuple):
-    """The uplift, as samples show it; NaN without one."""
+    """Uplift in the samples; NaN without one."""
 
-    time: float = math.nan  # [s]; 0 where the first sample leans already: a release
-    direction: float = math.nan  # azimuth at the first sample that leans [rad]
+    time: float = math.nan  # [s]; 0 where the first sample is tilted: a release
+    direction: float = math.nan  # azimuth at the first tilted sample [rad]
     first: int | None = None  # that sample
 
 
 def uplift(time: Array, tilt: Array, angle: Array, *, stands: float) -> Uplift:
-    """Return the uplift of samples (n,): times [s], tilts and azimuths of the lean, NaN if not known [rad].
+    """Uplift from samples (n,): times [s], tilts and azimuths, NaN where unknown [rad].
 
     Up to the tilt `stands` [rad] the cylinder counts as standing. Where the ground acceleration rises through
     the threshold the tilt begins as theta = K t^3/6, so a lean is seen only some time after the uplift: the
@@ -316,7 +316,7 @@ def _resampled(poses: Poses, time: Array) -> tuple[Array, Array, Array]:
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
     azimuth = np.arctan2(axis[:, 1], axis[:, 0])
-    # branch of the angle that was followed from sample to sample
+    # branch of the angle followed from sample to sample
     branch = np.round((np.interp(time, own, poses.rolling_angle) - azimuth) / (2.0 * np.pi))
     return tilt, azimuth + 2.0 * np.pi * branch, axis
 
@@ -324,7 +324,7 @@ def _resampled(poses: Poses, time: Array) -> tuple[Array, Array, Array]:
 def _interpolated(own: Array, values: Array, time: Array) -> Array:
     from scipy.interpolate import Akima1DInterpolator
 
-    # the first sample may stand a rounding after the start
+    # rounding may put the first sample after the start
     return np.asarray(Akima1DInterpolator(own, values)(np.clip(time, own[0], own[-1])))
 
 
@@ -339,7 +339,7 @@ def _peak(poses: Poses) -> float:
 
 
 def _passes(poses: Poses, start: float) -> pd.DataFrame:
-    """Tilt minima between two maxima; one next to a guessed change of azimuth is not resolved."""
+    """Tilt minima between two maxima; one next to an ambiguous change of azimuth is not resolved."""
     points = turning_points(poses.time, poses.tilt, poses.rolling_angle)
     if poses.tilt[0] > poses.stands and poses.tilt[0] >= poses.tilt[1]:  # released at rest: a maximum
         time, tilt, angle = (float(each[0]) for each in (poses.time, poses.tilt, poses.rolling_angle))
@@ -368,5 +368,5 @@ def _places(
     lean, rise = np.hypot(axis[:, 0], axis[:, 1]), 1.0 - axis[:, 2:]
     centre = np.column_stack([np.where(rests, 0.0, b * rise * outward), b * lean]) + h * axis
     if not np.isfinite(poses.rolling_angle).any():
-        centre[:, :2] = np.nan  # the tilt alone tells how high it is, not where
+        centre[:, :2] = np.nan  # the tilt alone gives its height, not its position
     return np.where(rests, np.nan, b * outward), centre, np.full((len(time), 2), np.nan)

@@ -22,9 +22,9 @@ from .trajectory import external_motion, measurement, trajectory_of, twist_since
 
 LEAST_LOSS = 5e-3  # smallest relative loss of a maximum from swing to swing that is reported
 FEWEST_MAXIMA = 3
-LESS_DIFFERENCE = 0.25  # largest share of the tilt difference left by a resistance that explains it
-LEAST_RESISTANCE = 1e-4  # smallest resistance tried, over b
-# standard deviations of the noise: the first of some hundred samples that is above a tilt is sought
+LESS_DIFFERENCE = 0.25  # largest share of the tilt difference that may remain with a rolling resistance
+LEAST_RESISTANCE = 1e-4  # smallest rolling resistance tried, over b
+# standard deviations of the noise: margin for the first of some hundred samples above a tilt
 CONFIDENCE = 4.0
 
 Row = dict[str, Any]  # row of a summary
@@ -96,7 +96,7 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
     explained = next(explanations(source.table.values, read, model), None) if found.differs_in else None
     mistakes: tuple[Mistake, ...] = explained.mistakes if explained else ()
     left = explained.left if explained else found
-    if found.tilt.differs and left.tilt.differs:  # before passes are blamed
+    if found.tilt.differs and left.tilt.differs:  # judged before passes
         lost, without = losses(motion, model, reference, case)
         mistakes, left = (*lost, *mistakes), without if len(lost) > 1 and not mistakes else left
     if mistakes:
@@ -114,7 +114,7 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
 def losses(
     motion: Motion, reference: Reference, trace: Trace, case: Case
 ) -> tuple[tuple[Mistake, ...], Difference]:
-    """Return the loss that explains how the tilts differ, if one does, and what differs without it.
+    """Rolling resistance that explains the tilt difference, if one does, and the difference without it.
 
     The models of recess and flat ground lose nothing: over still ground each maximum of the tilt is as high
     as the one before, whatever becomes of the azimuths in the passes between. `trace` is that of the model.
@@ -142,7 +142,7 @@ def losses(
 
 
 def loss_of(motion: Motion, reference: Reference) -> float:
-    """Return the share of a maximum of the tilt that is lost to the next, the median; 0 where none is known.
+    """Share of a maximum of the tilt lost to the next, the median; 0 where unknown.
 
     That of a release on still ground alone: elsewhere the ground makes and takes energy. 0 too where a
     maximum is higher than the one before by more than noise.
@@ -157,11 +157,11 @@ def loss_of(motion: Motion, reference: Reference) -> float:
 
 
 def maxima(tilt: Array, least: float) -> Array:
-    """Return the maxima of a tilt from which it falls by more than `least` [rad], the first included."""
+    """Maxima of a tilt from which it falls by more than `least` [rad], the first included."""
     entries: list[float] = []
     highest, lowest = float(tilt[0]), math.inf
     for value in tilt.tolist():
-        if lowest == math.inf:  # rising, or just behind a maximum
+        if lowest == math.inf:  # increasing, or just after a maximum
             highest = max(highest, value)
             if value < highest - least:
                 entries.append(highest)
@@ -174,7 +174,7 @@ def maxima(tilt: Array, least: float) -> Array:
 
 
 def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None, Part | None]:
-    """Return time [s] and azimuth [rad] at which a trajectory leans first, minus those of a model.
+    """Time [s] and azimuth [rad] of the first tilt of a trajectory, minus those of a model.
 
     A cylinder may rock for a while below the tilt that its samples can show. So what is compared is when both
     lean that far, and the model shows how well noise and samples determine that time.
@@ -188,7 +188,7 @@ def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None
     if not (seen > 0.0 and 0.0 < passed[1] < math.inf):
         return None, None
     early, middle, late = passed
-    # a trajectory may miss a tilt that the model only just reaches: undecided until the largest tilt
+    # a trajectory may miss a tilt that the model only just reaches: undecided up to the largest tilt
     late = late if math.isfinite(late) else float(reference.time[int(np.argmax(reference.tilt))])
     half = 0.5 * trajectory.time_step
     apart = seen - half - middle
@@ -233,7 +233,7 @@ def mistakes_of(row: ExternalSummaryRow) -> tuple[Mistake, ...]:
 
 
 def lists_in_words(verdicts: pd.DataFrame) -> pd.DataFrame:
-    """Verdicts whose lists are texts, for a CSV file or a page: "azimuth; path"."""
+    """Verdicts with lists as texts, for a CSV file or a page: "azimuth; path"."""
     return verdicts.assign(**{name: verdicts[name].map(_join) for name in LISTS})
 
 
@@ -244,7 +244,7 @@ def _join(cell: Sequence[str | float]) -> str:
 
 
 def lists_of_file(verdicts: pd.DataFrame) -> pd.DataFrame:
-    """Verdicts that were stored, with their lists as tuples again."""
+    """Verdicts from a file, with their lists as tuples again."""
 
     def with_nan(cell: Sequence[str | float | None]) -> tuple[str | float, ...]:
         return tuple(math.nan if each is None else each for each in cell)

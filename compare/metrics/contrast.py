@@ -122,7 +122,7 @@ class Pairs:
         return np.isnan(self.peaks) | np.isnan(self.against)
 
     def log_ratios(self) -> Array:
-        """Return the logarithm of the ratio of each member, NaN where it has none."""
+        """Logarithm of the ratio of each member, NaN without one."""
         first, second = (
             np.where(fell, math.inf, peaks)
             for fell, peaks in ((self.overturned, self.peaks), (self.against_overturned, self.against))
@@ -133,13 +133,13 @@ class Pairs:
             return np.asarray(np.log(first) - np.log(second), dtype=np.float64)
 
     def ratio_bounds(self) -> tuple[float, ...]:
-        """Return the least and the largest median ratio, whatever the members that failed would have done."""
+        """Least and largest median ratio, for any outcome of the members that failed."""
         known = self.log_ratios()
         fates = (np.where(self.failed, fate, known) for fate in (-math.inf, math.inf))
         return tuple(quantile_interval(each[~np.isnan(each)], 0.5).exponential().value for each in fates)
 
     def contrast(self) -> Contrast | None:
-        """Return the contrast of the methods; None where fewer than two members ran by both."""
+        """Contrast of the methods; None where fewer than two members ran by both."""
         counts, logarithms = ~self.failed, self.log_ratios()
         if np.count_nonzero(counts) < 2:
             return None
@@ -170,7 +170,7 @@ class Pairs:
 def pairs_in(
     runs: pd.DataFrame, method: str, against: str, *, member: str = "member", peak: str = "peak_tilt"
 ) -> Pairs:
-    """Return the members of a table by two methods, each beside itself.
+    """Members of a table by two methods, paired.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def pairs_in(
 
 
 def pairs_of(traces: Sequence[Trace], against: Sequence[Trace]) -> Pairs:
-    """Return the members of two sequences of traces (n,), in the same order; peak tilts in rad."""
+    """Members of two sequences of traces (n,), in the same order; peak tilts in rad."""
     parts = (traces, against)
     peaks = (np.array([trace.peak_tilt for trace in part]) for part in parts)
     fell = (np.array([trace.outcome == "overturned" for trace in part]) for part in parts)

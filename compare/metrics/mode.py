@@ -1,4 +1,4 @@
-"""Findings on the mode of motion, which an answer states before anything else."""
+"""Findings on the mode of motion, which precede all others in an answer."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class Pair(CompactRepr):
 
 
 def make_pair(cylinder: RockingBody, reference: Trace, trial: Trace, *, until: float | None = None) -> Pair:
-    """Put `trial` on the samples of `reference`, as far as both reach.
+    """Motions of `trial` and `reference` at the samples of the latter, as far as both reach.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def make_pair(cylinder: RockingBody, reference: Trace, trial: Trace, *, until: f
 
 
 def start_of(trace: Trace) -> float:
-    """Uplift or release of a trace, or when it begins to slide [s]; 0 where there is none."""
+    """Uplift or release of a trace, or the start of its slide [s]; 0 without any."""
     if trace.mode == SLIDES:
         return float(trace.time[max(int((trace.displacement != 0.0).any(axis=1).argmax()) - 1, 0)])
     return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
@@ -145,7 +145,7 @@ def _finite_end(trace: Trace) -> float:
 
 
 def _resample(own: FloatArray, values: FloatArray, time: FloatArray) -> FloatArray:
-    """Return `values` given at the times `own`, at the times `time`; linear where they differ."""
+    """Values at the times `own` interpolated linearly to the times `time`."""
     count = len(time)
     if len(own) >= count and bool(np.all(np.abs(own[:count] - time) < _SAME_TIME)):
         return values[:count]
@@ -163,7 +163,7 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
 
 
 def beyond_yield(peak_tilts: ArrayLike, case: Case) -> NDArray[np.bool_]:
-    """Mask of the runs, by peak tilt [rad], whose tendon yields: models are elastic, so these are no answer.
+    """Mask of the runs, by peak tilt [rad], in which the tendon yields: an elastic model has no answer.
 
     Where it yields only beyond the balance, a run that overturns does so before.
     """
@@ -176,19 +176,19 @@ def beyond_yield(peak_tilts: ArrayLike, case: Case) -> NDArray[np.bool_]:
 
 
 def outcome_of_peak(peak: float) -> str:
-    """Return the outcome of a run of a reduced model by its peak tilt [rad], NaN where it failed."""
+    """Outcome of a run of a reduced model by its peak tilt [rad], NaN where it failed."""
     return "failed" if math.isnan(peak) else "overturned" if overturned(peak) else "stands"
 
 
 def balance_of(case: Case) -> float:
-    """Return the balance tilt of a case, at most pi/2 [rad]; alpha where no term of it moves the balance."""
+    """Balance tilt of a case, at most pi/2 [rad]; alpha where no term of it moves the balance."""
     from rockwobble import reduced
 
     return min(reduced.balance_tilt_of_case(case), OVERTURNED_TILT)
 
 
 def outcome_of(trace: Trace) -> str:
-    """Return the outcome of a run for a study; rest on a wall beyond balance counts as overturned.
+    """Outcome of a run for a study; rest on a wall beyond balance counts as overturned.
 
     One that leans on a wall beyond its balance at the end of its run counts as overturned: after it the
     ground is still, as where a fall is decided.
@@ -242,7 +242,7 @@ _HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes lon
 
 
 def direction_difference(reference: Trace, trial: Trace) -> float:
-    """Return the difference of the directions of uplift or release, in (-pi, pi] [rad]."""
+    """Difference of the directions of uplift or release, in (-pi, pi] [rad]."""
     return -math.remainder(reference.uplift_direction - trial.uplift_direction, 2.0 * math.pi)
 
 
@@ -272,7 +272,7 @@ def turn_difference(pair: Pair, *, until: float, direction_difference: float = 0
 
 
 def _turn_difference(pair: Pair, direction_difference: float) -> FloatArray:
-    """Trial minus reference (n,) [rad], without the whole turn by which the two started apart."""
+    """Trial minus reference (n,) [rad], without the whole turns between their starts."""
     difference = pair.rolling_angle - pair.reference_rolling_angle
     both = np.flatnonzero(np.isfinite(difference))
     if not len(both):
@@ -317,7 +317,7 @@ def largest_differences(
 
 
 def first_unresolved_pass(trial: Trace, *, start: float = 0.0) -> float:
-    """Return the time of the engine's first pass below its contact resolution [s]; inf if none.
+    """Time of the engine's first pass below its contact resolution [s]; inf if none.
 
     Passes before `start`, the uplift of the reference, are those of a base that settles in its contact.
     """
@@ -330,7 +330,7 @@ def first_unresolved_pass(trial: Trace, *, start: float = 0.0) -> float:
 
 
 def landings(response: Trace) -> FloatArray:
-    """Return the times at which a reduced model goes through upright itself (n,) [s], to a sample.
+    """Times at which a reduced model passes exactly upright (n,) [s], to a sample.
 
     Its contact then jumps to the other end of the diameter. A fall that follows makes no pass of it.
     """
@@ -338,9 +338,9 @@ def landings(response: Trace) -> FloatArray:
     return np.asarray(response.time)[1:][np.abs(turned - np.pi) < _HALF_A_TURN]
 
 
-# share of the peak tilt: motions that stay below 1 % of alpha agree within that whatever they do
+# share of the peak tilt: motions below 1 % of alpha would always agree within that
 PEAK_SHARE = 0.1
-# so many times the tolerance a tilt has to change by: half of a small peak; less is known to a fifth at best
+# least change of a tilt in tolerances: half of a small peak; less is known to a fifth at best
 TESTING = 5.0
 
 
@@ -368,12 +368,12 @@ class Agreement:
 
 
 def tolerance_of(reference: Trace, trial: Trace | None = None) -> float:
-    """Return the smaller of 1 % of alpha and a tenth of the peak tilt [alpha].
+    """Smaller of 1 % of alpha and a tenth of the peak tilt [alpha].
 
     The peak is that of the reference, or of the trial where the reference stays at rest.
     """
     if reference.mode == SLIDES:
-        return AGREEMENT  # the tolerance of the peak displacement as well
+        return AGREEMENT  # as a share of the peak displacement
     for trace in (reference, trial):
         if trace is not None and math.isfinite(trace.uplift_time) and trace.peak_tilt > 0.0:
             return min(AGREEMENT, PEAK_SHARE * trace.peak_tilt / trace.case.cylinder.alpha)
@@ -383,7 +383,7 @@ def tolerance_of(reference: Trace, trial: Trace | None = None) -> float:
 def agreement_time(
     pair: Pair, *, tolerance: float = AGREEMENT, broken: bool = False, allowance: float = 0.0
 ) -> Agreement:
-    """Return the time from uplift, release or slide to the first difference above a tolerance.
+    """Time from uplift, release or slide to the first difference above a tolerance.
 
     See `Pair.motion_difference`.
 
@@ -416,7 +416,7 @@ def agreement_time(
 def agreement_of(
     reference: Trace, trial: Trace, *, until: float | None = None, tolerance: float = AGREEMENT
 ) -> Agreement:
-    """Return the agreement of two traces of one case, see `make_pair` and `agreement_time`."""
+    """Agreement of two traces of one case, see `make_pair` and `agreement_time`."""
     return agreement_time(
         make_pair(reference.case.cylinder, reference, trial, until=until), tolerance=tolerance
     )
@@ -438,7 +438,7 @@ def agreed_passes(reference: Trace, agreement: Agreement) -> int:
 
 
 def closest_pass(reference: Trace, agreement: Agreement) -> float:
-    """Return the smallest minimum tilt of the passes within the agreement [rad]; NaN without a pass."""
+    """Smallest minimum tilt of the passes within the agreement [rad]; NaN without a pass."""
     minima = np.asarray(reference.passes["minimum_tilt"], dtype=np.float64)[
         : agreed_passes(reference, agreement)
     ]
@@ -446,7 +446,7 @@ def closest_pass(reference: Trace, agreement: Agreement) -> float:
 
 
 def energy_loss(trace: Trace, motion: GroundMotion | None) -> float:
-    """Return the energy lost over the run, relative to the largest energy reached.
+    """Energy lost over the run, relative to the largest energy reached.
 
     In the frame of the ground the excitation is the body force -m a, so what was lost is the energy
     at the start, plus the work of that force, minus the energy at the end.
@@ -489,7 +489,7 @@ def _sampled_and_mean(
     samples: FloatArray, time_step: float, time: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Acceleration at the times `time`, and its exact mean between each two of them [m/s^2]."""
-    # linear between samples, zero after the last: one more knot takes the jump
+    # linear between samples, zero after the last: one more knot at the jump
     own = np.arange(len(samples)) * time_step
     own = np.append(own, np.nextafter(own[-1], math.inf))
     values = np.append(samples, 0.0)

@@ -21,16 +21,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# probability with which an interval contains what it is for
+# coverage probability of an interval
 CONFIDENCE = 0.95
-# fewer values have no interval of the median of that probability: 1 - 2/2^5 is 94 %
+# least count for an interval of the median: fewer values have less than 95 %, 1 - 2/2^5 is 94 %
 FEWEST = 6
 _HALVINGS = 60  # halvings of an interval of indices, to rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Interval:
-    """A value and its interval; an end that the members do not bound is infinite."""
+    """Value and its interval; an end that the members do not bound is infinite."""
 
     value: float
     low: float
@@ -44,7 +44,7 @@ class Interval:
         return "beyond" if self.high < low or self.low > high else "undecided"
 
     def exponential(self) -> Interval:
-        """Return the interval of a number from this one of its logarithm."""
+        """Interval of a number from this one of its logarithm."""
         return Interval(value=math.exp(self.value), low=math.exp(self.low), high=math.exp(self.high))
 
     def columns(self, name: str) -> dict[str, float]:
@@ -55,7 +55,7 @@ class Interval:
 
 
 def value_if_enough(value: float, count: int, *, ratio: bool = False) -> float:
-    """Return a quantile, median or ratio of `count` members where it may be stated, else NaN.
+    """Quantile, median or ratio of `count` members where it may be stated, else NaN.
 
     It is not of fewer than `FEWEST` members. Nor is a `ratio` of zero or infinity: it says only that most
     members overturn by one of two methods alone. Counts say either.
@@ -71,7 +71,7 @@ def value_if_enough(value: float, count: int, *, ratio: bool = False) -> float:
 
 
 def quantile_interval(values: Array, share: float) -> Interval:
-    """Return a quantile of what the values are drawn from, and its interval.
+    """Quantile of the distribution of the values, and its interval.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def quantile_interval(values: Array, share: float) -> Interval:
 
 
 def covering(values: Array, share: float) -> tuple[float, int]:
-    """Return the least value that at least a share of the values do not exceed, and how many do not.
+    """Least value that at least a share of the values do not exceed, and the number that do not.
 
     It is an order statistic, so that it is infinite only where more than 1 - share of the values are: what is
     said of it and of the share of runs that overturn is one statement.
@@ -129,7 +129,7 @@ def covering(values: Array, share: float) -> tuple[float, int]:
 
 
 def share_interval(count: int, total: int) -> Interval:
-    """Return the share `count` / `total` of a sample, and its interval.
+    """Share `count` / `total` of a sample, and its interval.
 
     Exact, of C. J. Clopper and E. S. Pearson, Biometrika 26, 404-413, 1934: it contains the share with 95 %
     or more. Without a sample nothing is known, and the value is NaN.
@@ -152,7 +152,7 @@ def share_interval(count: int, total: int) -> Interval:
 
 @cache
 def end_index(count: int, share: float, left_out: float) -> float | None:
-    """Return the index, from 1, of the order statistic that is above the quantile with a given probability.
+    """Index, from 1, of the order statistic that is above the quantile with a given probability.
 
     None where even the smallest value is so with more than the probability `left_out`.
     """
@@ -171,7 +171,7 @@ def end_index(count: int, share: float, left_out: float) -> float | None:
 
 
 def _between(ordered: Array, index: float) -> float:
-    """Return the order statistic of an index from 1, on the line between its neighbours."""
+    """Order statistic of an index from 1, linear between its neighbours."""
     below = math.floor(index)
     fraction = index - below
     low, high = float(ordered[below - 1]), float(ordered[min(below, len(ordered) - 1)])
@@ -184,17 +184,17 @@ def _between(ordered: Array, index: float) -> float:
 
 Flags = NDArray[np.bool_]
 
-# two methods are the same for the median member where it is known to differ by less: no engineer knows a
-# peak tilt to 5 %, and an ensemble of some twenty members can show it
+# margin of equality of two methods for the median member: no engineer knows a peak tilt to 5 %, and an
+# ensemble of some twenty members can show it
 MARGIN = 0.05
-# probability of detecting a difference that is called detectable
+# probability of detecting a detectable difference
 POWER = 0.8
-# probability of a difference as large by chance, below which two methods are told apart
+# significance level of a difference of two methods
 SIGNIFICANCE = 0.05
 
 
 def signed_rank_p(logarithms: Array) -> float:
-    """Return the probability of Wilcoxon's signed ranks, infinite values the largest and zeros left out.
+    """p-value of Wilcoxon's signed ranks, infinite values the largest and zeros left out.
 
     Exact for every number of members, and for ties as those of infinite ratios, which share a mean rank:
     scipy takes a normal distribution there, or tries all signs one by one.
@@ -202,7 +202,7 @@ def signed_rank_p(logarithms: Array) -> float:
     differs = logarithms[logarithms != 0.0]
     _, place, ties = np.unique(np.abs(differs), return_inverse=True, return_counts=True)
     ranks = (2 * np.cumsum(ties) - ties + 1)[place]  # twice the mean ranks, which are whole or a half
-    # how often each sum of the ranks of the larger ones comes about where every sign is a coin
+    # number of sign choices with each sum of ranks, under random signs
     sums = np.zeros(ranks.sum() + 1)
     sums[0] = 1.0
     for rank in ranks:
@@ -212,14 +212,14 @@ def signed_rank_p(logarithms: Array) -> float:
 
 
 def mcnemar_p(only: int, only_there: int) -> float:
-    """Return the p-value of McNemar's exact test on members that overturn by one method alone."""
+    """p-value of McNemar's exact test on members that overturn by one method alone."""
     from scipy.special import bdtr
 
     return min(2.0 * float(bdtr(min(only, only_there), only + only_there, 0.5)), 1.0)
 
 
 def paired_difference(only: int, only_there: int, count: int) -> Interval:
-    """Return the difference of two shares of the same members.
+    """Difference of two shares of the same members.
 
     Interval of D. G. Bonett and R. M. Price, J. Educ. Behav. Stat. 37, 479-488, 2012: that of Wald with one
     more member in both discordant counts, without which none at all would have no width.
@@ -243,17 +243,17 @@ def paired_difference(only: int, only_there: int, count: int) -> Interval:
 
 
 def least_significant_count() -> int:
-    """Return the least count by one method alone, none by the other, that is significant by `mcnemar_p`."""
+    """Least count by one method alone, none by the other, that is significant by `mcnemar_p`."""
     return math.floor(math.log2(2.0 / SIGNIFICANCE)) + 1
 
 
 def largest_share_unseen(count: int) -> float:
-    """Return the share that a sample of `count` misses altogether with a probability of 5 % [-]."""
+    """Share that a sample of `count` misses altogether with a probability of 5 % [-]."""
     return float(1.0 - (1.0 - CONFIDENCE) ** (1.0 / count))
 
 
 def ratio_within_reach(logarithms: Array) -> float:
-    """Return the smallest detectable ratio above 1, for as many members with this scatter; infinite if none.
+    """Smallest detectable ratio above 1, for as many members with this scatter; infinite if none.
 
     Told is a ratio that the interval of the median leaves 1 out for. Its lower end, the order statistic of
     index k, is above 1 with the wanted power where a member is with the share q: I_q(n + 1 - k, k) is the
@@ -279,7 +279,7 @@ def ratio_within_reach(logarithms: Array) -> float:
 
 
 def adjusted(probabilities: Array) -> Array:
-    """Return the p-values of several tests, adjusted for their number.
+    """p-values of several tests, adjusted for their number.
 
     S. Holm, Scand. J. Stat. 6, 65-70, 1979.
     """

@@ -1,4 +1,4 @@
-"""Finished tasks in a folder of results, each found again by what it depends on."""
+"""Cache of finished tasks in a folder of results, each under the hash of its inputs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 R = TypeVar("R")
 
-_PLAN = "tasks.json"  # there only until all tasks are done
+_PLAN = "tasks.json"  # exists only until all tasks are done
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -64,11 +64,11 @@ class Cache(Generic[T, R]):
 
     @property
     def count(self) -> int:
-        """Number of results that are kept here."""
+        """Number of stored results."""
         return len(self._there)
 
     def find(self, task: T) -> R | None:
-        """Return the result of a task if it is there and whole; what is damaged runs again."""
+        """Result of a task if it is stored and undamaged; a damaged task runs again."""
         path = self._there.get(self.name(task))
         if path is None:
             return None
@@ -84,7 +84,7 @@ class Cache(Generic[T, R]):
         return None
 
     def keep(self, task: T, result: R) -> None:
-        """Keep the result of a task.
+        """Store the result of a task.
 
         Raises
         ------
@@ -100,14 +100,14 @@ class Cache(Generic[T, R]):
         self._used.add(path)
 
     def expect(self, count: int) -> None:
-        """Note the number of tasks to come, at least, from which the share that is finished follows."""
+        """Store the least number of tasks to come, for the finished share."""
         if count > self._expected:
             self._expected = count
             plan = {"kind": self.kind, "total": count}
             write_whole(self.folder / _PLAN, plain_json.dumps(plan).encode())
 
     def complete(self, *, alone: bool) -> None:
-        """Mark the plan as complete; with `alone`, remove results that no task of it has used."""
+        """Mark the plan as complete; with `alone`, remove results that none of its tasks has used."""
         for path in set(self.folder.glob("*.parquet")) - self._used if alone else ():
             path.unlink()
         (self.folder / _PLAN).unlink(missing_ok=True)
@@ -126,7 +126,7 @@ def open_cache(
     pack: Callable[[T, R], bytes],
     unpack: Callable[[T, bytes], R],
 ) -> Iterator[Cache[T, R]]:
-    """Open the finished tasks of one kind of results in `folder`; nobody else can meanwhile.
+    """Open the finished tasks of one kind of results in `folder`, locked against other processes.
 
     What was left half-written is removed. If the block ends well, and this process has claimed the folder for
     one plan, so are the results that it did not ask for, such as those of an older version; else all are
@@ -163,7 +163,7 @@ def open_table_cache(
 
 
 class UnfinishedResults(TypedDict):
-    """Results in a folder that have not come to their end: kind, and tasks done and in all."""
+    """Unfinished results in a folder: kind, finished tasks and all tasks."""
 
     kind: str
     done: int
@@ -171,7 +171,7 @@ class UnfinishedResults(TypedDict):
 
 
 def unfinished_results(folder: str | Path) -> list[UnfinishedResults]:
-    """Return kind, done and total tasks of the results in a folder that have not come to their end."""
+    """Kind, finished tasks and all tasks of the unfinished results in a folder."""
     entries: list[UnfinishedResults] = []
     for path in sorted(Path(folder).glob(f"{CACHE}/*/{_PLAN}")):
         plan = plain_json.loads(path.read_bytes())

@@ -1,4 +1,4 @@
-"""Choice of the runs of a comparison: defaults, references, settings, and the labels that tell them apart."""
+"""Choice of the runs of a comparison: defaults, references, settings, and distinct labels."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _LEAN = 1e-3  # tilt over alpha that fits into any ring
 
 
 def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, object]) -> tuple[Run, ...]:
-    """Return the runs with more settings, each where the run has one of that name.
+    """Runs with more settings, each where the run has a setting of that name.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, object
 
 
 def at_step(run: Run, step: TimeStep) -> Run:
-    """Return the run at another time step, without the settings of the way to its own.
+    """Run at another time step, without the settings of its search for one.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def at_step(run: Run, step: TimeStep) -> Run:
 
 
 def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
-    # try a release that every engine and ring can start, as the settings may be needed by the case
+    # try a release that every engine and ring can start, as the settings may depend on the case
     start = Case(
         case.cylinder, initial=InitialState(_LEAN * case.cylinder.alpha), duration=1.0, name=case.name
     )
@@ -100,12 +100,12 @@ def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
 
 
 def step_settings(run: Run) -> tuple[str, ...]:
-    """Return the settings of the search for the time step of a run."""
+    """Settings of the search for the time step of a run."""
     return tuple(name for name, way in STEP_SETTINGS.items() if way == run.time_step)
 
 
 class Compared(NamedTuple):
-    """One run of a case, and what it is compared with.
+    """One run of a case, with its references.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ class Compared(NamedTuple):
 
 
 def compared_runs(cases: Sequence[Case], runs: Sequence[Run], reference: Run | None) -> list[Compared]:
-    """Return each run of each case, compared with `reference` or with what its support asks for."""
+    """Each run of each case, compared with `reference` or with the references of its support."""
     labels, named = labels_beside_references(runs, reference)
     return [
         Compared(case, label, run, own_model_of(case, run), references_of(case, run, label, reference, named))
@@ -136,11 +136,11 @@ def compared_runs(cases: Sequence[Case], runs: Sequence[Run], reference: Run | N
 
 
 def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tuple[tuple[str, ...], str]:
-    """Return a label for each run and that of the reference, all different and none that of another model.
+    """Labels of each run and of the reference, all different and none equal to that of another model.
 
     A reduced model at its defaults keeps its name.
     """
-    run_labels(runs)  # none of them twice
+    run_labels(runs)  # all different
     others: list[Run] = []
     for each in (*REDUCED_MODELS, *(() if reference is None else (reference,))):
         if each not in (*runs, *others):
@@ -151,7 +151,7 @@ def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tupl
 
 
 def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
-    """Return a label for each run: engine and support, and as much more as tells them apart."""
+    """Label for each run: engine and support, and as many settings as distinguish the runs."""
     labels = [str(run) for run in runs]
     steps = [
         f"{run.time_step:g} s" if isinstance(run.time_step, float) else run.time_step or "" for run in runs
@@ -169,7 +169,7 @@ def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
 
 
 def missing_engines() -> tuple[str, ...]:
-    """Return the engines that every installation is meant to have and that do not run in this one.
+    """Standard engines that do not run in this installation.
 
     Returns
     -------
@@ -179,12 +179,12 @@ def missing_engines() -> tuple[str, ...]:
 
 
 def left_out(name: str) -> str:
-    """Return the line on an engine that every installation is meant to have, where it does not run."""
+    """Line on a standard engine that does not run here."""
     return f"{name} {engine_fault(name)}; it is left out"
 
 
 def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run], list[str]]:
-    """Return the runs of a suite that this installation can make, and a line on each engine it lacks.
+    """Runs of a suite that this installation can make, and a line on each missing engine.
 
     Where an engine has no wheel, another takes its place as in a default run. One that every installation is
     meant to have is left out where it is missing or does not load; others, and those that are named, stay,
@@ -218,7 +218,7 @@ def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run]
 
 
 def reserved_engines() -> dict[str, str]:
-    """Return the installed engines that a default run leaves out, and why.
+    """Installed engines that a default run leaves out, with the reason.
 
     A default run takes the engines that serve any case: those with each support and with uplift. The
     others run where they are named, as do those of ours that are an extra.
@@ -236,7 +236,7 @@ def _reservation(name: str) -> str:
     try:
         engine = engine_named(name)
     except BrokenEngineError as error:
-        # a broken engine of another package stops nobody here
+        # a broken engine of another package is skipped
         return str(error)
     lacks = [f"no {support} support" for support in MODELLED if support not in engine.supports]
     lacks += [] if engine.uplifts else ["no uplift"]
@@ -249,7 +249,7 @@ def _reservation(name: str) -> str:
 
 
 def require_runnable(case: Case, run: Run) -> None:
-    """Check engine, support, time step and settings of a run, so that no other run starts in vain.
+    """Check engine, support, time step and settings of a run before any other run starts.
 
     Parameters
     ----------
@@ -263,7 +263,7 @@ def require_runnable(case: Case, run: Run) -> None:
         the case, the time step is too large for contact, or a setting is unknown or out of range.
     """
     if run.is_model:
-        # loads the compiler, which who only imports this need not wait for
+        # loads the compiler, which an import alone does not need
         from rockwobble.reduced.problem import Problem
 
         Problem(case, **run.settings, support=run.support)
@@ -279,7 +279,7 @@ def default_runs(
     *,
     cases: Sequence[Case] = (),
 ) -> tuple[Run, ...]:
-    """Return every engine that serves any case with each support, those in a recess first.
+    """Every engine that serves any case with each support, those in a recess first.
 
     Engines that are named run whatever they can do: with the supports that they have where none is named.
     Where only supports are named, each gets the engines that have it, or all if none has, which will say so.
@@ -314,19 +314,19 @@ def default_runs(
     for support in MODELLED if supports is None else supports:
         able = [engine for engine in engines if support in find_engine(engine).supports]
         if supports is None and support not in usual:
-            # one that is named and has no other is refused for it, not left out
+            # a named engine without this support is refused, not left out
             others = [] if unnamed else able
             able = [engine for engine in others if not set(usual) & set(find_engine(engine).supports)]
         if unnamed and supports is not None and not able:
             for name in missing_engines():
                 if support in engine_named(name).supports:
-                    find_engine(name)  # refuses it, and says what it lacks
+                    find_engine(name)  # refuses it with the missing package
         runs += [Run(engine, support) for engine in able or (engines if supports is not None else ())]
     return tuple(runs)
 
 
 def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tuple[Run, ...]:
-    """Return every installed engine that can start all cases, with each of the supports that it has.
+    """Every installed engine that can start all cases, with each of its supports.
 
     Raises
     ------
@@ -344,7 +344,7 @@ def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tu
 
 
 def unable_engines(cases: Sequence[Case]) -> tuple[str, ...]:
-    """Return why installed engines cannot run these cases, one sentence for each."""
+    """Reasons why installed engines cannot run these cases, one sentence for each."""
     return tuple(filter(None, (_unable(name, cases) for name in available_engines())))
 
 
@@ -359,7 +359,7 @@ def _unable(name: str, cases: Sequence[Case]) -> str:
 
 
 def omissions(supports: Sequence[str]) -> tuple[str, ...]:
-    """Return why a default run with these supports leaves out installed engines, one sentence for each."""
+    """Reasons why a default run with these supports leaves out installed engines, one sentence for each."""
     reserved = reserved_engines()
     names = [name for name in available_engines() if name not in reserved]
     lacks = [
@@ -371,7 +371,7 @@ def omissions(supports: Sequence[str]) -> tuple[str, ...]:
 def references_of(
     case: Case, run: Run, label: str, reference: Run | None = None, named: str = ""
 ) -> dict[str, Run]:
-    """Return the references of a run, by label: `reference`, or what its support asks for.
+    """References of a run, by label: `reference`, or those of its support.
 
     The reference is called `named`, by default as it calls itself.
 
@@ -382,7 +382,7 @@ def references_of(
     if reference is not None:
         chosen = {named or str(reference): reference}
     elif run.support.walls:
-        # the step of a run that seeks its own is not known beforehand
+        # the step of a run with an automatic step is unknown beforehand
         half = "half the default step" if isinstance(run.time_step, str) else "half the step"
         default = default_step(case.cylinder.semidiagonal, case.gravity)
         step = run.time_step if isinstance(run.time_step, float) else default
@@ -391,7 +391,7 @@ def references_of(
 
 
 def models_of(case: Case, run: Run) -> tuple[Run, ...]:
-    """The reduced models that a run of a case is compared with; the last is the nearest to it.
+    """Reduced models with which a run of a case is compared; the last is the nearest to it.
 
     Those that its support names. From rest in one plane an engine's base closes with an impact: the planar
     model takes it by the moment of momentum. What friction lets slide on flat ground is compared with the
@@ -407,6 +407,6 @@ def models_of(case: Case, run: Run) -> tuple[Run, ...]:
 
 
 def own_model_of(case: Case, run: Run) -> Run:
-    """The reduced model that an exact engine would follow."""
+    """Reduced model of an exact engine for this run."""
     nearest = models_of(case, run)[-1]
     return nearest if nearest.is_planar and not run.is_model else run.own_model

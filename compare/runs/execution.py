@@ -1,4 +1,4 @@
-"""Runs of a case by a reduced model or an engine, and tables of tasks: many, each kept as it is finished."""
+"""Runs of a case by a reduced model or an engine, and tables of tasks, each stored when it is finished."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SAMPLE_STEP = 0.01
 _EQUAL_STEPS: dict[str | None, float] = {"auto": 2.5e-5, "extrapolated": FINEST / 1.75}
 
 
-_FEW = 16  # runs of reduced models that take less than to start a process
+_FEW = 16  # largest number of runs of reduced models that take less time than to start a process
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -115,7 +115,7 @@ def simulate(
 
 
 def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> Trace:
-    """Run a reduced model or an engine on a case, as `run` says.
+    """Run a reduced model or an engine on a case, by the settings of `run`.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> T
         for name in run.settings.keys() - known:
             raise ValueError(f"a reduced model has the settings {', '.join(sorted(known))}, got {name!r}")
         found = reduced.simulate(case, support=run.support, sample_step=sample_step, **run.settings)
-        _ = found.late  # computed here, so that it travels with the trace
+        _ = found.late  # computed here, so that it is pickled with the trace
         return found
     from rockwobble import multibody
 
@@ -164,7 +164,7 @@ def simulate_all(
     progress: ProgressCallback | None = None,
     cache: Cache[Job, Trace] | None = None,
 ) -> list[Trace]:
-    """Run all jobs; return their traces in the same order.
+    """Traces of all jobs, in their order.
 
     Parameters
     ----------
@@ -209,12 +209,12 @@ def simulate_all(
 
 
 def job_time(job: Job) -> float:
-    """Return the rough computing time of a job [s]; infinite for a reduced model, perhaps to be compiled."""
+    """Rough computing time of a job [s]; infinite for a reduced model, which may need compilation."""
     return math.inf if job.run.is_model else engine_time(job.case, job.run)
 
 
 def brief_among(jobs: Iterable[Job]) -> Callable[[Job], bool]:
-    """Predicate: a job takes less than starting a process, as one of few of reduced models."""
+    """Predicate of jobs that take less time than to start a process, as one of few of reduced models."""
     few = sum(job.run.is_model for job in jobs) <= _FEW
     return lambda job: few and _is_compiled(job)
 
@@ -230,7 +230,7 @@ def _is_compiled(job: Job) -> bool:
 
 
 def open_trace_cache(folder: str | Path, kind: str) -> AbstractContextManager[Cache[Job, Trace]]:
-    """Open the finished runs of a folder of results of a kind, see `open_cache`."""
+    """Open the finished runs in a folder of results, see `open_cache`."""
 
     def to_bytes(job: Job, trace: Trace) -> bytes:
         about = {"kind": "run", "case": job.case.name, "label": job.label, "trace": trace.to_plain()}
@@ -244,7 +244,7 @@ def open_trace_cache(folder: str | Path, kind: str) -> AbstractContextManager[Ca
 
 
 def equal_step(case: Case, run: Run) -> float:
-    """Return the time step of a single run of an engine that takes as long as `run` [s]."""
+    """Time step of a single run of an engine with the computing time of `run` [s]."""
     unit_time = froude_scale(case.cylinder.semidiagonal, case.gravity).time
     if isinstance(run.time_step, float):
         return run.time_step
@@ -252,17 +252,17 @@ def equal_step(case: Case, run: Run) -> float:
 
 
 def engine_time(case: Case, run: Run) -> float:
-    """Return the rough computing time of a run of an engine [s]."""
+    """Rough computing time of a run of an engine [s]."""
     return case.length / equal_step(case, run) * engine_facts(run.engine_name).step_time
 
 
 def makers_of(run: Run) -> dict[str, str]:
-    """Return versions and code on which a run depends."""
+    """Versions and code on which a run depends."""
     return reduced_makers() if run.is_model else engine_makers(run.engine_name)
 
 
 def all_makers(runs: Iterable[Run]) -> dict[str, str]:
-    """Return versions and code that any of the runs depends on; without runs, those of the reduced models."""
+    """Versions and code on which any of the runs depends; without runs, those of the reduced models."""
     engines = sorted({run.engine_name for run in runs if not run.is_model})
     return reduced_makers() | (engine_makers(*engines) if engines else {})
 
@@ -279,9 +279,9 @@ def jobs_fingerprint(jobs: Iterable[Job]) -> str:
 
 
 def case_inputs(case: Case) -> dict[str, object]:
-    """Return the inputs that runs of a case depend on, without the names of it and its motion."""
+    """Inputs on which runs of a case depend, without its name and that of its motion."""
     motion = case.motion
-    # runs without extra terms keep the identity they had before terms existed
+    # runs without extra terms have the same hash as before terms existed
     return case.terms | {
         "cylinder": case.cylinder,
         "motion": None if motion is None else (motion.acceleration, motion.time_step),

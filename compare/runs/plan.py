@@ -58,12 +58,12 @@ class _Stated(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True)
 class OptionsIn:
-    """Factory of the fields of a plan that are options under one heading of the help text."""
+    """Factory of plan fields that are options under one heading of the help text."""
 
     group: str
 
     def __call__(self, default: T, text: str, **stated: Unpack[_Stated]) -> T:
-        """Return the field of a plan that is an option: its help, and attributes of `Option`."""
+        """Plan field of an option: its help, and attributes of `Option`."""
         stated.setdefault("group", self.group)
         return field(default=default, metadata={_KEY: Option(help=text, **stated)})
 
@@ -72,7 +72,7 @@ option = OptionsIn("Method")
 
 
 class Plan:
-    """Base of the plans: frozen dataclasses whose fields are options, checked when one is made.
+    """Base of the plans: frozen dataclasses whose fields are options, checked at construction.
 
     Raises
     ------
@@ -81,7 +81,7 @@ class Plan:
     """
 
     def __post_init__(self) -> None:
-        # imports numpy, which help can do without
+        # imports numpy, which the help of a command does not need
         from rockwobble.models.number_checks import require_in_range, require_one_of
 
         kinds = get_type_hints(type(self))
@@ -97,5 +97,5 @@ class Plan:
 
 
 def options_of(plan: type) -> dict[str, Option]:
-    """Return the options of a plan by name."""
+    """Options of a plan by name."""
     return {each.name: each.metadata[_KEY] for each in fields(plan) if _KEY in each.metadata}

@@ -1,4 +1,4 @@
-"""Progress of tasks, wherever they run: the share that is done, and the time to go."""
+"""Progress of tasks: the finished share, and the remaining time."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from rockwobble.models.shown import CompactRepr
 
 @dataclass(frozen=True, slots=True)
 class FailedTask:
-    """A task whose process died, with its last words; it stands in the place of the result."""
+    """Placeholder for the result of a task whose process died, with its last words."""
 
     why: str
 
 
 class IncompleteError(RuntimeError):
-    """Some tasks are not finished: their processes died again and again, or the Dask cluster is gone."""
+    """Error of unfinished tasks: their processes died repeatedly, or the Dask cluster is gone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -60,7 +60,7 @@ Stage = Callable[[str], AbstractContextManager[object]]
 
 
 class Clock:
-    """Tells a callback how far it is, from the costs of the tasks.
+    """Calls a callback with the finished share, by the costs of the tasks.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class Clock:
         self._begun = time.monotonic()
 
     def __call__(self, state: Literal["started", "finished"], label: str, cost: float = 0.0) -> None:
-        """Tell of the start of a task, or of the end of one of this cost."""
+        """Report the start of a task, or the end of one of this cost."""
         self._done += state == "finished"
         self._spent += cost
         share = self._spent / self._whole if self._whole > 0.0 else 0.0
@@ -96,7 +96,7 @@ class Clock:
 
 
 def stages(tell: ProgressCallback | None, costs: Sequence[float]) -> Stage:
-    """Context manager that reports one stage after the other to a callback, by label.
+    """Context manager that reports successive stages to a callback, by label.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Tasks side by side: in this process, in others, or on the workers of a Dask scheduler.
+"""Parallel tasks: in this process, in others, or on the workers of a Dask scheduler.
 
 The processes of the standard library start by running the caller's main script again, so a plain script
 without a main guard would start itself without end; and one that dies breaks a whole pool. A `Worker` runs
@@ -39,7 +39,7 @@ from .progress import Clock, FailedTask, ProgressCallback
 T = TypeVar("T")
 R = TypeVar("R")
 Call = tuple[Callable[..., object], tuple[object, ...]]
-_LOOK = 0.5  # between two looks at what runs [s]
+_LOOK = 0.5  # time between two checks of the running tasks [s]
 _SERVE = "from rockwobble.compare.runs.scheduler import serve; serve()"
 
 
@@ -47,26 +47,26 @@ _SERVE = "from rockwobble.compare.runs.scheduler import serve; serve()"
 Backend = tuple[Callable[..., Future[Any]], Callable[[], int], tuple[type[BaseException], ...]]
 # seconds to wait for the scheduler: a machine that is there answers in a fraction of one
 _PATIENCE = 15.0
-# tasks submitted for each that can run, so that no worker waits
+# tasks submitted for each worker, so that none waits
 _AHEAD = 2
 
 
 class ClusterError(RuntimeError):
-    """The scheduler is gone, or has no workers that can do the work; what is finished stays finished."""
+    """Error of a scheduler that is gone, or without suitable workers; finished tasks stay stored."""
 
 
 class WorkerDiedError(RuntimeError):
-    """The process of a call ended before the call did."""
+    """Error of a call whose process ended before it did."""
 
 
 class Worker:
-    """One process, and what it is told and tells.
+    """One process, with the pipes to and from it.
 
     Functions and arguments travel as pickles, so a function must be importable by name.
     """
 
     def __init__(self) -> None:
-        # engines drop log files where they run, and write to the standard output
+        # engines write log files to the working folder, and text to the standard output
         self._folder = tempfile.TemporaryDirectory(prefix="rockwobble-")
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the process)
         self._process = subprocess.Popen(
@@ -75,11 +75,11 @@ class Worker:
             stdout=subprocess.PIPE,
             stderr=self._log,
             cwd=self._folder.name,
-            start_new_session=True,  # Ctrl-C reaches the caller, and the caller ends this one
+            start_new_session=True,  # Ctrl-C reaches the caller, which ends this process
         )
 
     def call(self, function: Callable[..., T], *arguments: object) -> T:
-        """Return or raise what the function does there.
+        """Result or exception of the function, called in the process.
 
         Raises
         ------
@@ -105,7 +105,7 @@ class Worker:
         return result
 
     def kill(self) -> None:
-        """End the process at once, whatever it does; a call under way fails."""
+        """End the process at once; a call under way fails."""
         self._process.kill()
 
     def close(self) -> None:
@@ -126,7 +126,7 @@ class Worker:
 
 
 def serve() -> None:
-    """Answer calls from the standard input until it closes; the body of the process."""
+    """Body of the process: answer calls from the standard input until it closes."""
     gc.set_threshold(500_000)  # as in the command itself
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # output of an engine must not mix with the answers
@@ -143,10 +143,10 @@ def serve() -> None:
 
 
 def _failure(error: Exception) -> bytes:
-    error.add_note(traceback.format_exc())  # the traceback itself does not travel
+    error.add_note(traceback.format_exc())  # a traceback cannot be pickled
     try:
         pickle.loads(answer := pickle.dumps((False, error)))
-    except Exception:  # an exception class whose arguments do not make it again
+    except Exception:  # an exception class that cannot be rebuilt from its arguments
         return pickle.dumps((False, RuntimeError(f"{type(error).__name__}: {error}")))
     return answer
 
@@ -158,7 +158,7 @@ def _listen(stdin: BinaryIO, calls: queue.SimpleQueue[Call]) -> None:
             calls.put(pickle.load(stdin))
     except EOFError:
         os._exit(0)
-    except BaseException:  # such as a function that cannot be imported here: nobody would ever answer
+    except BaseException:  # such as a function that cannot be imported here: the caller would wait for ever
         traceback.print_exc()
         sys.stderr.flush()
         os._exit(1)
@@ -178,7 +178,7 @@ def run_tasks(
     makers: Callable[[], Mapping[str, str]] = reduced_makers,
     here: Callable[[T], bool] = lambda task: False,
 ) -> list[R | FailedTask]:
-    """Run a function on each task, and return the results in the order of the tasks.
+    """Results of a function for each task, in the order of the tasks.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def run_tasks(
     known = {index: costs[index] if math.isfinite(costs[index]) else 0.0 for index in waiting}
     damaged = [] if cache is None else [str(path) for path in cache.damaged]
     tell = Clock(progress, list(known.values()), len(results), damaged)
-    # a number that is given holds even for one task: in a process of its own it can be ended in a long call
+    # a given number of processes holds even for one task: a process can be ended during a long call
     count = min(usable_cpus(), len(waiting)) if workers is None else workers
     brief = [index for index in waiting if count > 1 and scheduler is None and here(tasks[index])]
     waiting = [index for index in waiting if index not in brief]
@@ -329,7 +329,7 @@ def on_cluster(address: str, makers: Callable[[], Mapping[str, str]]) -> Iterato
         distributed = importlib.import_module("distributed")
     except ImportError:
         raise ValueError("--scheduler needs Dask: pip install 'dask[distributed]'") from None
-    # it repeats each failed try of a connection, and each lost one; one clear line follows
+    # the client logs each failed and lost connection; one clear line follows
     for name in ("distributed.comm", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
@@ -367,7 +367,7 @@ def on_cluster(address: str, makers: Callable[[], Mapping[str, str]]) -> Iterato
 def _with_the_same_code(
     expected: Mapping[str, str], makers: Callable[[], Mapping[str, str]], function: Callable[[T], R], task: T
 ) -> R:
-    """Run a task where this is called; with other code its result would be filed under the wrong one."""
+    """Run a task on a worker that has the same code; else the result would be stored under a wrong hash."""
     here = makers()
     for name, value in expected.items():
         if here.get(name) != value:

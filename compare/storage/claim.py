@@ -1,4 +1,4 @@
-"""A folder of results belongs to one plan, and while it is written to, to one process.
+"""A folder of results belongs to one plan, and during writing to one process.
 
 A plan is a command with its options and the content of the files that it reads. Its hash stands in the
 manifest of what is complete; before that, beside the finished tasks, in a file of its own. So the same plan
@@ -22,7 +22,7 @@ from rockwobble.models import plain_json
 from .files import remove_folders, sole_writer, write_whole
 from .manifest import Manifest, keep_results, manifests_in, require_writable
 
-CACHE = "finished"  # folder of finished tasks, a folder in it for each kind of results
+CACHE = "finished"  # folder of finished tasks, with a folder in it for each kind of results
 _CLAIM = ".plan.json"
 
 
@@ -46,7 +46,7 @@ class Claim:
 
 
 def claim_on(folder: str | Path) -> Claim | None:
-    """Return the claim of this process on a folder; None without one."""
+    """Claim of this process on a folder; None without one."""
     claim = _read(Path(folder))
     return claim if claim is not None and claim.process == os.getpid() else None
 
@@ -93,7 +93,7 @@ def claim_folder(folder: str | Path, *, plan: str, command: str, overwrite: bool
 
 
 def _of_others(path: Path, plan: str, command: str) -> list[str]:
-    """Contents of a folder that are of other plans, in words."""
+    """Contents of a folder that belong to other plans, in words."""
     claim, tasks = _read(path), sum(1 for _ in path.glob(f"{CACHE}/*/*.parquet"))
     if claim is not None and tasks:
         return [] if claim.plan == plan else [f"{tasks} finished tasks of `{claim.command}`"]
@@ -112,7 +112,7 @@ def _is_of(manifest: Manifest, plan: str, command: str) -> bool:
 
 
 def _settle(path: Path, plan: str, command: str) -> None:
-    """Remove what other plans left, where this one is complete, and its claim where nothing is to resume."""
+    """Remove files of other plans once this one is complete, and its claim once nothing is to resume."""
     own = {each.kind for each in manifests_in(path) if each.plan == plan}
     if own:
         keep_results(path, own)
@@ -127,7 +127,7 @@ def _settle(path: Path, plan: str, command: str) -> None:
 
 
 def _read(path: Path) -> Claim | None:
-    """Return the claim on a folder, of whatever process; None without one, or where it is damaged."""
+    """Claim on a folder, of any process; None without one, or where it is damaged."""
     try:
         return Claim(**plain_json.loads((path / _CLAIM).read_bytes()))
     except (OSError, ValueError, TypeError):

@@ -1,4 +1,4 @@
-"""Files of results: written beside and renamed, so that none is ever seen half-written.
+"""Files of results: written beside and renamed, so that a file is never half-written.
 
 A file is forced to the disk before it gets its name. So whatever ends the process, or the machine, a
 name stands for a whole file, and what was not finished is a leftover whose name says so.
@@ -18,7 +18,7 @@ _LOCK = ".lock"
 
 
 def require_folder(folder: str | Path) -> Path:
-    """Return `folder` as a path if files can be written there, and leave no trace.
+    """Path of `folder` if files can be written there, tested without a trace.
 
     A folder that does not exist yet is one that can be made: its nearest ancestor decides.
 
@@ -48,7 +48,7 @@ def require_folder(folder: str | Path) -> Path:
 
 
 def require_file(what: str, path: Path) -> None:
-    """Refuse a place where a file cannot be written, and leave no trace.
+    """Refuse a path where a file cannot be written, tested without a trace.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def write_whole(target: Path, content: bytes) -> None:
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Remove the files in `folder` that a process which ended did not finish.
+    """Remove unfinished files in `folder` of a process that has ended.
 
     Only for a folder that no other process writes to: see `sole_writer`.
     """
@@ -128,7 +128,7 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def remove_folders(folders: Sequence[Path], *, without: Sequence[str] = ()) -> None:
-    """Remove folders, the innermost first, if they hold nothing but files of these names."""
+    """Remove folders, the innermost first, if they hold only files of these names."""
     with contextlib.suppress(OSError):
         for folder in folders:
             for name in without:
@@ -138,7 +138,7 @@ def remove_folders(folders: Sequence[Path], *, without: Sequence[str] = ()) -> N
 
 @contextmanager
 def sole_writer(folder: Path) -> Iterator[None]:
-    """Lock `folder`, made where it does not exist, for this process alone.
+    """Lock `folder`, created where it does not exist, for this process alone.
 
     The lock ends with the process, however that ends. Where the system has no such locks there is none.
 
@@ -159,14 +159,14 @@ def sole_writer(folder: Path) -> Iterator[None]:
         path.mkdir(parents=True, exist_ok=True)
         try:
             lock = place.open("a")
-        except FileNotFoundError:  # whoever made the folder has just removed it
+        except FileNotFoundError:  # another process has just removed the folder
             continue
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             lock.close()
             raise ValueError(f"another process is writing to {path}, wait for its end") from None
-        # whoever held it removes it at the end: then this one is of a name that is gone, or another's
+        # the other process removes its lock file at the end: then this one is no longer the file of that name
         if place.exists() and os.fstat(lock.fileno()).st_ino == place.stat().st_ino:
             break
         lock.close()
@@ -179,7 +179,7 @@ def sole_writer(folder: Path) -> Iterator[None]:
 
 
 def _is_stream(target: Path) -> bool:
-    """Whether a name stands for a device or a pipe: renamed over, it would be one no more."""
+    """Whether a path is a device or a pipe, which a rename would replace by a file."""
     return target.exists() and not (target.is_file() or target.is_dir())
 
 

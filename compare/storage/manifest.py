@@ -1,4 +1,4 @@
-"""One manifest.json for every folder of results: what they are, what made them, and which files hold them.
+"""One manifest.json for every folder of results: kind, origin and files of each.
 
 It gets its name last. So a folder with a manifest is whole, and what was written to it can be checked.
 """
@@ -30,7 +30,7 @@ Number = float | int | str | None
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Manifest(CompactRepr):
-    """Record of what results are and what made them.
+    """Record of the kind, inputs and origin of results.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Manifest(CompactRepr):
 
 
 def with_provenance(manifest: Manifest) -> Manifest:
-    """Return a manifest with date, commit, processor, code and, where it states none, versions of here."""
+    """Manifest with date, commit, processor, code and, unless stated, the installed versions."""
     return dataclasses.replace(
         manifest,
         date=datetime.now(UTC).date().isoformat(),
@@ -90,7 +90,7 @@ def with_provenance(manifest: Manifest) -> Manifest:
 
 
 def require_writable(folder: str | Path) -> Path:
-    """Return `folder` as a path if results can be written there, and leave no trace: asked before a run.
+    """Path of `folder` if results can be written there, tested before a run without a trace.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def write_results(
     place = Path(folder)
     before = manifests_in(place)
     written = {**data, **(pages or {})}
-    # a result that lost a file to this one is not whole any more
+    # results that lost a file to these are damaged
     others = [each for each in before if each.kind != manifest.kind and not written.keys() & {*each.files}]
     replace_files(place, {**written, MANIFEST: _pack([whole, *others])})
     _remove(place, [each for each in before if each.kind == manifest.kind], kept=[whole, *others])
@@ -160,7 +160,7 @@ def write_results(
 
 
 def write_pages(folder: str | Path, kind: str, pages: Mapping[str, bytes]) -> None:
-    """Write what was drawn again of the results in `folder`, which stay as they are.
+    """Write new pages of the results in `folder`, which stay unchanged.
 
     Raises
     ------
@@ -177,7 +177,7 @@ def write_pages(folder: str | Path, kind: str, pages: Mapping[str, bytes]) -> No
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stored:
-    """The results of one kind in a folder, none of its files damaged."""
+    """Results of one kind in a folder, with all files undamaged."""
 
     folder: Path
     manifest: Manifest
@@ -213,7 +213,7 @@ class Stored:
 
 
 def read_results(folder: str | Path, kind: str) -> Stored:
-    """Return the results of one kind in `folder`; what is installed here has no part in them.
+    """Results of one kind in `folder`, independent of the installed versions.
 
     Raises
     ------
@@ -231,7 +231,7 @@ def read_results(folder: str | Path, kind: str) -> Stored:
 
 
 def file_state(folder: Path, manifest: Manifest, name: str) -> str:
-    """Return whether a file of data is "whole", "damaged" or "missing"."""
+    """State of a file of data: "whole", "damaged" or "missing"."""
     try:
         content = (folder / name).read_bytes()
     except OSError:
@@ -240,7 +240,7 @@ def file_state(folder: Path, manifest: Manifest, name: str) -> str:
 
 
 def read_manifests(folder: str | Path) -> list[Manifest]:
-    """Return the manifest of each kind of results in `folder`, the last written first.
+    """Manifest of each kind of results in `folder`, the last written first.
 
     Raises
     ------
@@ -254,7 +254,7 @@ def read_manifests(folder: str | Path) -> list[Manifest]:
 
 
 def keep_results(folder: Path, kinds: Collection[str]) -> None:
-    """Remove the results of all other kinds from a folder, but for files that those kept have, too.
+    """Remove the results of all other kinds from a folder, except files in use by the kinds given.
 
     Raises
     ------
@@ -275,7 +275,7 @@ def _remove(folder: Path, gone: Sequence[Manifest], kept: Sequence[Manifest]) ->
 
 
 def manifests_in(folder: Path) -> list[Manifest]:
-    """Return the manifests in `folder`, the last written first; none where there is no manifest.json.
+    """Manifests in `folder`, the last written first; none where there is no manifest.json.
 
     Raises
     ------

@@ -25,7 +25,7 @@ _DIGITS = 32
 
 
 def fingerprint(value: object) -> str:
-    """Return the hash of a value: numbers by their bits, containers and dataclasses by what they hold.
+    """Hash of a value: numbers by their bits, containers and dataclasses by their contents.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def _kinds_and_bytes(value: object) -> Iterator[tuple[str, bytes]]:
         value = value.item()
     parts: Iterable[object] = ()
     if isinstance(value, str):
-        yield "str", value.encode()  # a support is text, too
+        yield "str", value.encode()  # a support is a str, too
     elif value is None or isinstance(value, bool | int):
         yield type(value).__name__, str(value).encode()
     elif isinstance(value, float):
@@ -90,13 +90,13 @@ _REDUCED = ("rockwobble", "numpy", "numba")
 
 
 def package_versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
-    """Return the versions of Python and of the packages and engines that results depend on."""
+    """Versions of Python, packages and engines on which results depend."""
     versions = {"python": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
     return versions | {package: _version(package) for package in packages}
 
 
 def other_versions(then: Mapping[str, str], engine: str | None = None) -> tuple[str, ...]:
-    """Versions that are others than `then`, as "numpy 1.26 -> 2.0"; of engines that of one."""
+    """Versions that differ from `then`, as "numpy 1.26 -> 2.0"; of the engines only that in use."""
     now, engines = package_versions(), engine_packages()
     for name, package in engines.items():
         if name != engine:
@@ -113,7 +113,7 @@ def _version(package: str) -> str:
 
 
 def processor() -> str:
-    """Return the name of the processor and the number of its cores that are ours."""
+    """Name of the processor and number of its cores that this process may use."""
     name = platform.processor() or platform.machine()
     information = Path("/proc/cpuinfo")
     if information.exists():
@@ -124,7 +124,7 @@ def processor() -> str:
 
 @cache
 def commit() -> str:
-    """Return the commit of the checkout that this file is in; empty without one.
+    """Commit of the checkout with this file; empty without one.
 
     With "+" after changes of anything but published results, which code does not rest on.
     """
@@ -137,7 +137,7 @@ def commit() -> str:
         return done.stdout.strip()
 
     try:
-        git("ls-files", "--error-unmatch", here.name)  # else the repository is one that we are installed in
+        git("ls-files", "--error-unmatch", here.name)  # else it is another repository
         code = (":(top)", ":(top,exclude)reports/published")
         return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "-uno", "--", *code) else "")
     except (OSError, subprocess.CalledProcessError):
@@ -145,12 +145,12 @@ def commit() -> str:
 
 
 def code_digests() -> dict[str, str]:
-    """Return a hash of the sources of each folder that numbers come from."""
+    """Hash of the sources of each folder with numerical code."""
     return {name: _source_digest(name) for name in ("models", "reduced", "multibody", "compare", "studies")}
 
 
 def result_fingerprint(inputs: object, made_with: Mapping[str, str]) -> str:
-    """Hash of the inputs of a result, and of the versions and code that made it.
+    """Hash of the inputs of a result, and of its versions and code.
 
     Parameters
     ----------
@@ -163,12 +163,12 @@ def result_fingerprint(inputs: object, made_with: Mapping[str, str]) -> str:
 
 
 def reduced_makers() -> dict[str, str]:
-    """Return versions and code on which the runs of the reduced models depend."""
+    """Versions and code on which the runs of the reduced models depend."""
     return _makers(_REDUCED, "reduced")
 
 
 def engine_makers(*engines: str) -> dict[str, str]:
-    """Return versions and code on which the runs of engines depend."""
+    """Versions and code on which runs of engines depend."""
     packages = engine_packages()
     own = _makers(
         ("rockwobble", "numpy", *(packages[name] for name in engines if name in packages)), "multibody"
@@ -178,7 +178,7 @@ def engine_makers(*engines: str) -> dict[str, str]:
 
 @cache
 def _of_another_package(name: str) -> str:
-    """Version of an engine that another package declares, and a hash of the folder of its module."""
+    """Version of an engine of another package, and a hash of the folder of its module."""
     from rockwobble.multibody.engines.registry import find_engine
 
     engine = find_engine(name)
@@ -195,13 +195,13 @@ def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:
 @cache
 def _source_digest(folder: str) -> str:
     """Hash of the sources of one folder: in a checkout they change without a change of version."""
-    found = importlib.util.find_spec(f"rockwobble.{folder}")  # importing it would load the compiler
+    found = importlib.util.find_spec(f"rockwobble.{folder}")  # an import would load the compiler
     assert found is not None
     return _digest_of(Path(str(found.origin)).parent)
 
 
 def source_digest(*parts: ModuleType | type | Callable[..., object]) -> str:
-    """Return a hash of the sources of modules, functions and classes."""
+    """Hash of the sources of modules, functions and classes."""
     return hashlib.sha256("".join(map(inspect.getsource, parts)).encode()).hexdigest()[:16]
 
 

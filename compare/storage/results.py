@@ -1,4 +1,4 @@
-"""Results: the one value that every study returns, that is saved, loaded, shown and drawn."""
+"""Results: the common base of the values that studies return, with save, load and display."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Results(Shown):
         cls.kind, cls.findings_file = kind, findings_file or f"{kind}.json"
 
     def __getattr__(self, name: str) -> pd.DataFrame:
-        # not the fields themselves, for which a copy or a pickle asks before there are any
+        # other names alone: a copy or a pickle asks for fields before they exist
         if name.startswith("_") or name in ("tables", "facts", "manifest") or name not in self.tables:
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
         return self.tables[name]
@@ -55,7 +55,7 @@ class Results(Shown):
         return sorted({*super().__dir__(), *self.tables})
 
     def headline(self) -> Mapping[str, Number]:
-        """Return the main numbers, by what they are."""
+        """Main numbers, by name."""
         return {}
 
     def _main_facts(self) -> Mapping[str, str]:
@@ -66,11 +66,11 @@ class Results(Shown):
         return Findings()
 
     def sheets(self) -> Mapping[str, bytes]:
-        """Return files of data besides the tables, by name, such as tables as CSV."""
+        """Files of data besides the tables, by name, such as tables as CSV."""
         return {}
 
     def made_by(self, command: str = "") -> Self:
-        """Return these results with the manifest of this machine and version, and of the `command`."""
+        """Results with the manifest of this machine and version, and of the `command`."""
         facts = self.facts
         manifest = Manifest(
             kind=self.kind,
@@ -84,7 +84,7 @@ class Results(Shown):
         return dataclasses.replace(self, manifest=with_provenance(manifest))
 
     def _about(self) -> Mapping[str, object]:
-        """Facts that stand in the manifest."""
+        """Facts for the manifest."""
         return self.facts
 
     def save(self, folder: str | Path, *, pages: Mapping[str, bytes] | None = None) -> None:
@@ -116,7 +116,7 @@ class Results(Shown):
 
     @classmethod
     def load(cls, folder: str | Path) -> Self:
-        """Return the results of this kind in `folder`, as they were saved; nothing runs.
+        """Results of this kind from `folder`, as saved; nothing runs.
 
         Raises
         ------
@@ -127,5 +127,5 @@ class Results(Shown):
 
     @classmethod
     def of_stored(cls, stored: Stored) -> Self:
-        """Return the results whose files are whole."""
+        """Results from files that are all undamaged."""
         return cls(tables=stored.tables(), facts=stored.manifest.about, manifest=stored.manifest)

@@ -1,4 +1,4 @@
-"""Made-up traces with known differences."""
+"""Synthetic traces with known differences."""
 
 from __future__ import annotations
 

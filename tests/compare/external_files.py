@@ -1,4 +1,4 @@
-"""Files of external trajectories: what a motion may be written as."""
+"""Files of external trajectories, in every form of columns."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ TURN, PLACE = ["time", "qw", "qx", "qy", "qz"], ["x", "y", "z"]
 
 
 def columns(trace: Trace, spin: float = 0.0) -> pd.DataFrame:
-    """All columns that a file may hold, in SI units; the quaternion is that of a body that spins [rad/s].
+    """All columns of a file, in SI units; the quaternion is that of a body that spins [rad/s].
 
     A turn by -phi + twist about the axis, a tilt about y, a turn by phi about z.
     """

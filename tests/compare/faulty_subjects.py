@@ -14,7 +14,7 @@ Faulty = Callable[[Subject], Subject]
 
 
 def asked(change: Callable[[Case], Case]) -> Faulty:
-    """A subject that answers another question."""
+    """Subject that runs another case than asked."""
 
     def faulty(right: Subject) -> Subject:
         def source(case: Case, support: str, **options: Any) -> Trace:
@@ -26,7 +26,7 @@ def asked(change: Callable[[Case], Case]) -> Faulty:
 
 
 def answered(change: Callable[[Trace], Trace]) -> Faulty:
-    """A subject that gives another answer."""
+    """Subject with a changed trace."""
 
     def faulty(right: Subject) -> Subject:
         def source(*given: Any, **options: Any) -> Trace:
@@ -38,7 +38,7 @@ def answered(change: Callable[[Trace], Trace]) -> Faulty:
 
 
 def moved(change: Callable[[GroundMotion], GroundMotion]) -> Faulty:
-    """A subject whose ground moves otherwise."""
+    """Subject with a changed ground motion."""
 
     def other(case: Case) -> Case:
         motion = None if case.motion is None else change(case.motion)
@@ -48,7 +48,7 @@ def moved(change: Callable[[GroundMotion], GroundMotion]) -> Faulty:
 
 
 def field(name: str, change: Callable[[Any], Any]) -> Faulty:
-    """A subject that states another value of one field."""
+    """Subject with another value of one field of the trace."""
 
     def other(trace: Trace) -> Trace:
         value = change(getattr(trace, name))
@@ -60,7 +60,7 @@ def field(name: str, change: Callable[[Any], Any]) -> Faulty:
 
 
 def larger(case: Case, size: float = 1.001) -> Case:
-    """The same problem of a body, or of columns, larger by a factor."""
+    """Problem of a body, or of columns, larger by a factor."""
     body = case.cylinder
     column = body.cylinder if isinstance(body, WobblingFrame) else body
     column = dataclasses.replace(column, semidiagonal=size * column.semidiagonal)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def multiples(task: int) -> pd.DataFrame:
-    # here, because each process of a test would import them at its start
+    # imported here: at module level each process of a test would import them at its start
     import numpy as np
     import pandas as pd
 

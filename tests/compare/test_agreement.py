@@ -29,7 +29,7 @@ def growing(cylinder, make_trace):
     return reference, make_trace(time, tilt - difference, uplift_time=2.0)
 
 
-def test_horizon_counts_from_uplift_to_one_per_cent_of_alpha(cylinder, growing):
+def test_agreement_lasts_from_uplift_to_one_per_cent_of_alpha(cylinder, growing):
     agreement = agreement_time(make_pair(cylinder, *growing))
     assert agreement.diverged
     # 1e-6 exp(t) = 1e-2 at t = ln 1e4
@@ -37,7 +37,7 @@ def test_horizon_counts_from_uplift_to_one_per_cent_of_alpha(cylinder, growing):
     assert agreement.end == pytest.approx(agreement.length + 2.0)
 
 
-def test_passes_within_the_horizon_are_agreed(cylinder, growing):
+def test_passes_within_the_agreement_time_are_agreed(cylinder, growing):
     reference, _ = growing
     agreement = agreement_time(make_pair(cylinder, *growing))
     assert agreement.end == pytest.approx(11.22)
@@ -45,7 +45,7 @@ def test_passes_within_the_horizon_are_agreed(cylinder, growing):
     assert closest_pass(reference, agreement) == 2e-5
 
 
-def test_traces_that_never_part_agree_for_the_length_of_the_run(cylinder, make_trace):
+def test_traces_that_never_diverge_agree_for_the_length_of_the_run(cylinder, make_trace):
     time = np.arange(1001) * SAMPLE
     tilt = np.full_like(time, 0.3 * cylinder.alpha)
     pair = make_pair(
@@ -83,7 +83,7 @@ def test_a_reference_without_passes_predicts_no_divergence(make_trace):
     assert close_pass(make_trace(time, np.full_like(time, 0.1)), 1e-3, 0.1).length == 0.1
 
 
-def test_a_tolerance_is_a_tenth_of_the_peak_of_what_moves(cylinder, make_trace):
+def test_the_tolerance_is_a_tenth_of_a_small_peak(cylinder, make_trace):
     time = np.arange(101) * SAMPLE
 
     def peak(share: float, uplift: float = 0.5):
@@ -102,7 +102,7 @@ def test_a_tolerance_is_a_tenth_of_the_peak_of_what_moves(cylinder, make_trace):
     assert tolerance_of(failed) == 0.01
 
 
-def test_an_agreement_is_tested_by_motion_beyond_the_tolerance(cylinder, make_trace):
+def test_only_motion_beyond_the_tolerance_tests_an_agreement(cylinder, make_trace):
     time = np.arange(1001) * SAMPLE
     tilt = cylinder.alpha * 0.002 * np.maximum(time - 2.0, 0.0)  # 0.016 alpha at the end
     reference = make_trace(time, tilt, uplift_time=2.0)
@@ -116,11 +116,11 @@ def test_an_agreement_is_tested_by_motion_beyond_the_tolerance(cylinder, make_tr
     assert [agreed(leaves, 0.0002).tested for leaves in (2.4, 2.6)] == [False, True]
     lean = make_trace(time, np.full_like(time, 0.3 * cylinder.alpha))  # released, and not yet in motion
     assert not agreement_time(make_pair(cylinder, lean, lean)).tested
-    sinks = make_trace(time, cylinder.alpha * (0.3 - 0.01 * time))  # motion is up or down
+    sinks = make_trace(time, cylinder.alpha * (0.3 - 0.01 * time))  # a decreasing tilt is motion, too
     assert agreement_time(make_pair(cylinder, sinks, sinks)).tested
 
 
-def test_a_summary_holds_both_bounds_and_the_time_of_the_run(cylinder, make_trace):
+def test_a_summary_uses_both_bounds_and_the_time_of_the_run(cylinder, make_trace):
     time = np.arange(1001) * SAMPLE
     swing = np.where(time < 2.0, 0.0, 0.0075 * cylinder.alpha * np.sin(time - 2.0) ** 2)
     reference = make_trace(time, swing, uplift_time=2.0)
@@ -133,7 +133,7 @@ def test_a_summary_holds_both_bounds_and_the_time_of_the_run(cylinder, make_trac
     found = row(rest, 3.0)
     assert (found["diverged"], found["agreement_time"]) == (False, 10.0)  # within 1 % of alpha
     assert (found["tolerance"], found["reference_uplift_time"]) == (pytest.approx(7.5e-4, rel=1e-3), 2.0)
-    # a tenth of the peak is passed where the sine is the root of a tenth
+    # a sine reaches a tenth of its peak at arcsin(0.1)
     assert found["left_tolerance"]
     assert found["within_tolerance_until"] == pytest.approx(2.0 + math.asin(math.sqrt(0.1)), abs=SAMPLE)
     assert found["predicted_until"] == 5.0

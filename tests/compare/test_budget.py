@@ -1,4 +1,4 @@
-"""The parts of a difference, and controls that a part cannot pass for another."""
+"""Parts of a difference, with controls that none counts as another."""
 
 from __future__ import annotations
 
@@ -66,26 +66,26 @@ def budget(engine, limit: Limit, cylinder: Cylinder = PIER) -> ErrorBudget:
     return error_budget(engine, model, model, limit, WHOLE_RUN)
 
 
-def test_the_parts_add_up_sample_by_sample(engine, limit):
+def test_the_parts_add_up_at_every_sample(engine, limit):
     found = budget(engine, limit)
     total = found.model_form + found.numerics + found.unexplained
     assert np.allclose(total, found.whole, rtol=0.0, atol=ROUNDING)
 
 
-def test_the_error_of_a_step_is_numerics_and_not_unexplained(engine, limit):
+def test_the_error_of_a_step_is_numerical_and_not_unexplained(engine, limit):
     found = budget(engine, limit)
     assert found.rms("numerics") > 1e-7  # far above the 1e-10 of the reduced model
-    assert found.columns()["unexplained_share"] < 0.01  # third order in the step is left
+    assert found.columns()["unexplained_share"] < 0.01  # error of third order in the step
 
 
-def test_a_coarser_step_adds_to_numerics_alone(engine, limit):
+def test_a_coarser_step_increases_numerics_alone(engine, limit):
     coarse = run(CASE, 2.0 * STEP)
     found, coarser = budget(engine, limit), budget(coarse, limit)
     assert coarser.rms("numerics") > 1.8 * found.rms("numerics")  # first order doubles, less 10 %
     assert coarser.rms("unexplained") == found.rms("unexplained")
 
 
-def test_a_model_half_a_per_cent_off_in_size_is_unexplained(engine, limit):
+def test_an_error_of_half_a_per_cent_in_size_is_unexplained(engine, limit):
     wrong = Cylinder(semidiagonal=1.005 * 6.0, tan_alpha=0.5)
     columns = budget(engine, limit, wrong).columns()
     assert columns["whole_rms"] > 1e-4
@@ -120,7 +120,7 @@ def test_first_and_second_order_vanish_from_three_smooth_runs():
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])
-def test_the_first_order_vanishes_whatever_the_number_of_runs(count):
+def test_the_first_order_vanishes_for_any_number_of_runs(count):
     steps = [0.5**k for k in range(count)]
     limit = extrapolated(TIME, made_up_tilts(steps, 0.3, 0.0), steps, smooth=False)
     assert np.allclose(limit.tilt, np.cos(TIME), rtol=0.0, atol=ROUNDING)
@@ -128,7 +128,7 @@ def test_the_first_order_vanishes_whatever_the_number_of_runs(count):
         extrapolated(TIME, [TIME], [1.0], smooth=True)
 
 
-def test_the_end_of_the_agreement_is_left_out(make_trace):
+def test_the_end_of_the_agreement_is_excluded(make_trace):
     # all of the difference is in the last fifth
     model = make_trace(TIME, np.full_like(TIME, 0.1))
     late = make_trace(TIME, 0.1 + np.where(TIME > 1.6 + 1e-9, 1e-3, 0.0))
@@ -139,7 +139,7 @@ def test_the_end_of_the_agreement_is_left_out(make_trace):
     assert found.whole[-1] > 0.0
 
 
-# RMS of numerics, unexplained, model form and limit error; measured order; a pass left to chance [s]
+# RMS of numerics, unexplained, model form and limit error; measured order; time of an unresolved pass [s]
 @pytest.mark.parametrize(
     ("parts", "order", "unresolved", "reason"),
     [
@@ -172,10 +172,10 @@ def test_unknown_differences_have_no_budget(parts, order, unresolved, reason) ->
     stated = [columns[name] for name in ("numerics_rms", "unexplained_rms", "unexplained_share")]
     assert np.isnan(stated).tolist() == [bool(reason)] * 3
     assert columns["model_form_rms"] == pytest.approx(parts[2], rel=ROUNDING)
-    assert unexplained_rows(pd.DataFrame([columns])).empty  # nothing is called unexplained that is not known
+    assert unexplained_rows(pd.DataFrame([columns])).empty  # an unknown part is not listed as unexplained
 
 
-def test_the_finer_runs_are_no_longer_than_the_traces_agree(engine):
+def test_the_finer_runs_end_with_the_agreement(engine):
     motion = GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.5)
     case = Case(PIER, motion, name="pulse")
     trajectory = dataclasses.replace(engine, uplift_direction=0.7)
@@ -187,26 +187,26 @@ def test_the_finer_runs_are_no_longer_than_the_traces_agree(engine):
         [refined], lambda wanted: jobs.extend(wanted) or [lost_trace(case, refined.run, "stop")] * len(wanted)
     )
     for level, job in enumerate(jobs, 1):
-        assert job.case.length == pytest.approx(0.81)  # no longer than the traces agree, in whole samples
+        assert job.case.length == pytest.approx(0.81)  # at most the agreement of the traces, in whole samples
         assert job.run.time_step == pytest.approx(trajectory.time_step * 0.5**level)
 
 
 @pytest.mark.slow
-def test_the_numerics_of_an_extrapolated_run_are_what_its_extrapolation_leaves():
+def test_numerics_of_an_extrapolated_run_are_the_error_of_its_limit():
     runs = [Run("mujoco", "recess", STEP), Run("mujoco", "recess", "extrapolated", finest_step=STEP / 2)]
     case = dataclasses.replace(CASE, duration=1.0)
     found = comparison(Suite([case], runs), runs=runs, budget=True, workers=1)
     plain, extrapolated = found.budget_rms.to_dict("records")
-    # both rest on the same finest run, the one at an eighth of the step
+    # both use the same finest run, at an eighth of the step
     assert extrapolated["numerics_rms"] < 0.1 * plain["numerics_rms"]
     assert extrapolated["unexplained_rms"] == pytest.approx(plain["unexplained_rms"], abs=1e-8)
     assert extrapolated["finest_step"] == pytest.approx(STEP / 8)
 
 
 @pytest.mark.slow
-def test_a_base_that_lands_flat_loses_what_the_model_keeps():
-    # released without spin it falls on its other edge, where the engine takes Housner's loss: of so little
-    # tilt that the two do not diverge by it
+def test_the_loss_of_a_base_that_lands_flat_is_model_form():
+    # released without spin it falls on its other edge, where the engine has Housner's loss: at a tilt so
+    # small that the two do not diverge
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(pier, initial=InitialState(0.04 * pier.alpha), duration=0.5, name="release")
     run = Run("mujoco", "recess", 2e-4)
@@ -214,11 +214,11 @@ def test_a_base_that_lands_flat_loses_what_the_model_keeps():
     (row,) = found.budget_rms.to_dict("records")
     assert row["whole_rms"] > WORTH_EXPLAINING
     assert row["model_form_rms"] == pytest.approx(row["whole_rms"], rel=0.1)
-    # 1 %: the engine is twice as coarse here as its default
+    # 1 %: the step is twice the default
     assert row["unexplained_share"] < 0.05
 
 
-def test_unexplained_rows_are_those_above_the_bound_the_worst_first():
+def test_unexplained_rows_are_sorted_with_the_worst_first():
     summary = pd.DataFrame(
         {
             "whole_rms": [1e-3, 5e-5, 1e-3, 1e-3, math.nan],

@@ -1,4 +1,4 @@
-"""A field that a case gets is ignored nowhere: digests take it, and who does not know it refuses it."""
+"""A new field of a case is ignored nowhere: hashes include it, and code without it refuses it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rockwobble.studies.spectrum import parts
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Padded(rw.Case):
-    """A case with a term that nothing knows."""
+    """A case with a term unknown to all models."""
 
     pad_stiffness: float = 0.0
 
@@ -35,23 +35,23 @@ TENDON = rw.Tendon(prestress=0.5, stiffness=2.0)
 PADDED = Padded(PIER, initial=RELEASE, duration=2.0, pad_stiffness=0.25)
 
 
-def test_terms_are_what_is_added_to_the_equations_and_differs_from_none() -> None:
+def test_terms_are_the_fields_that_differ_from_their_default() -> None:
     assert case_module.TERMS == ("rolling_resistance", "tendon")
     assert PLAIN.terms == replace(PLAIN, gravity=1.6, friction=0.3, name="other").terms == {}
     both = replace(PLAIN, tendon=TENDON, rolling_resistance=0.01)
     assert both.terms == {"rolling_resistance": 0.01, "tendon": TENDON}
     assert PADDED.terms == {"pad_stiffness": 0.25}
-    # and a tendon is an anchor
+    # a tendon is an anchor as well
     assert [replace(both, tendon=each).anchor for each in (None, TENDON)] == ["", "a tendon"]
 
 
-def test_the_digest_of_a_case_tells_a_new_term_by_its_value() -> None:
+def test_the_hash_of_a_case_depends_on_a_new_term() -> None:
     cases = PLAIN, PADDED, replace(PADDED, pad_stiffness=0.5)
     assert len({fingerprint(case_inputs(case)) for case in cases}) == len(cases)
     assert fingerprint(case_inputs(replace(PADDED, pad_stiffness=0.0))) == fingerprint(case_inputs(PLAIN))
 
 
-# as version 0.4.0 names results on disk: another digest computes them all again
+# hashes of results stored by version 0.4.0: with others all are computed again
 @pytest.mark.parametrize(
     ("terms", "digest"),
     [
@@ -61,11 +61,11 @@ def test_the_digest_of_a_case_tells_a_new_term_by_its_value() -> None:
         ({"tendon": rw.Tendon(), "rolling_resistance": 0.02}, "0719fc27499f5487ef04e24c09dad5cc"),
     ],
 )
-def test_the_digests_of_cases_stay(terms: dict[str, object], digest: str) -> None:
+def test_the_hashes_of_cases_are_unchanged(terms: dict[str, object], digest: str) -> None:
     assert fingerprint(case_inputs(replace(PLAIN, **terms))) == digest
 
 
-def test_the_reduced_models_and_their_balance_refuse_an_unknown_term() -> None:
+def test_reduced_models_and_balance_refuse_an_unknown_term() -> None:
     case = replace(PADDED, initial=rw.InitialState(0.1))
     for options in ({}, {"support": "flat"}, {"plane": 0.0}):
         with pytest.raises(ValueError, match=r"^the reduced models know no pad_stiffness, got 0\.25$"):
@@ -84,7 +84,7 @@ def test_engines_refuse_an_unknown_term(engine: str) -> None:
         engine_for(PADDED, engine, engine_named(engine).supports[0])
 
 
-def test_a_page_states_a_term_that_it_has_no_words_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_states_an_unknown_term_by_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(case_module, "TERMS", (*case_module.TERMS, "pad_stiffness"))
     assert conditions({"pad_stiffness": 0.25}) == ["Pad stiffness: 0.25"]
     assert conditions({"pad_stiffness": 0.0}) == []
@@ -92,12 +92,12 @@ def test_a_page_states_a_term_that_it_has_no_words_for(monkeypatch: pytest.Monke
 
 @dataclass(frozen=True, kw_only=True)
 class PaddedPlan(SpectrumPlan):
-    """Options of a spectrum with a term that nothing knows."""
+    """Options of a spectrum with an unknown term."""
 
     pad_stiffness: float = 0.0
 
 
-def test_the_digest_of_a_part_of_a_spectrum_tells_a_new_term() -> None:
+def test_the_hash_of_a_spectrum_depends_on_a_new_term() -> None:
     def key(plan: SpectrumPlan) -> str:
         one, still = np.ones(1), rw.GroundMotion(np.zeros((2, 2)), 0.1)
         runs = parts.SpectrumRuns(

@@ -1,4 +1,4 @@
-"""Certificates: what repeats, what is chaotic, what changed, and what may be claimed."""
+"""Certificates: repeatability, chaos, changes, and claims."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ from rockwobble.models import Case, GroundMotion
 pytestmark = pytest.mark.checkout
 
 ROOT = Path(__file__).resolve().parents[2]
-# of the faults in the sources of the recess model, each tenth: all of them take minutes in the interpreter
+# every tenth fault in the sources of the recess model: all of them take minutes in the interpreter
 STORED = ("reduced", "mujoco")
-WRITTEN = 1e-11  # a signal is kept to twelve digits
-# no signal of a certificate holds the force at the top of a column
+WRITTEN = 1e-11  # a signal is stored with twelve digits
+# no signal of a certificate includes the force at the top of a column
 FAULTS = [one for one in mutations() if one.faults and "at the top" not in one.name][::10]
 
 
@@ -62,12 +62,12 @@ def result(group: str, name: str, value: float, bound: float) -> Result:
 
 
 def without(certificate: dict[str, Any], *names: str) -> dict[str, Any]:
-    """As an earlier version made it, or of an engine that carries no slab or has no tendon."""
+    """Certificate of an earlier version, or of an engine without slab or tendon."""
     entries = [one for one in certificate["fingerprint"] if one["name"] not in names]
     return certificate | {"fingerprint": entries}
 
 
-def test_a_subject_has_the_cases_that_it_can_run() -> None:
+def test_a_subject_has_only_the_cases_that_it_can_run() -> None:
     cases, features = short_cases(), models().features
     assert len(cases) == len({short.name for short in cases}) == len({short.term for short in cases}) == 15
     for lacking, gone in (
@@ -87,7 +87,7 @@ def test_a_subject_has_the_cases_that_it_can_run() -> None:
         assert next(fingerprint(subject))["name"] == names[0]
 
 
-def test_a_certificate_without_a_case_is_verified_for_what_it_holds(certificate: dict[str, Any]) -> None:
+def test_a_certificate_without_a_case_is_verified_by_its_others(certificate: dict[str, Any]) -> None:
     older = without(certificate, "frame", "tendon")
     assert verify(older).word == SAME
     unknown = older["fingerprint"][0] | {"name": "sliding"}
@@ -95,7 +95,7 @@ def test_a_certificate_without_a_case_is_verified_for_what_it_holds(certificate:
         verify(older | {"fingerprint": [unknown]})
 
 
-def test_a_slab_or_a_tendon_of_one_percent_more_is_a_change_of_its_case(certificate: dict[str, Any]) -> None:
+def test_one_percent_in_slab_or_tendon_changes_only_its_case(certificate: dict[str, Any]) -> None:
     faults = []
     for name in ("gamma", "w", "mu"):
         # a term of a cylinder alone is 1 with or without the fault
@@ -111,7 +111,7 @@ def test_a_slab_or_a_tendon_of_one_percent_more_is_a_change_of_its_case(certific
         assert (answer.word, answer.case) == (CHANGED, case)
 
 
-def test_the_signals_of_a_release_begin_where_it_leans(certificate: dict[str, Any]) -> None:
+def test_the_signals_of_a_release_begin_at_its_tilt(certificate: dict[str, Any]) -> None:
     for short, one in zip(cases_of(models()), certificate["fingerprint"], strict=True):
         start = short.case.initial
         if start is not None:
@@ -132,12 +132,12 @@ def test_a_certificate_follows_its_schema(certificate: dict[str, Any]) -> None:
         jsonschema.validate({**certificate, "claims": claims}, schema, cls=jsonschema.Draft202012Validator)
 
 
-def test_the_interpreter_without_a_compiler_gives_the_same(certificate: dict[str, Any]) -> None:
-    old = certificate["fingerprint"][:-1]  # the last needs minutes there
+def test_interpreted_kernels_give_the_same_fingerprint(certificate: dict[str, Any]) -> None:
+    old = certificate["fingerprint"][:-1]  # the last case takes minutes in the interpreter
     with mutated() as copy:
         for one, new in zip(old, repeat(models(copy), old), strict=False):
             assert compare_entries(one, new).word == SAME, one["name"]
-            # rounding leaves four digits of what is allowed
+            # rounding is four digits below the allowed difference
             for name, wanted in one["signals"].items():
                 apart = np.abs(np.array(wanted) - np.array(new["signals"][name]))
                 assert (apart < 1e-3 * np.array(one["allowed"][name])).all()
@@ -154,7 +154,7 @@ def test_a_fault_in_the_models_changes_its_claim_and_term(certificate: dict[str,
     assert answer.exit_code == 1
 
 
-def test_only_the_last_case_is_chaotic_and_keeps_the_peaks_of_copies(certificate: dict[str, Any]) -> None:
+def test_only_the_last_case_is_chaotic_with_peaks_of_copies(certificate: dict[str, Any]) -> None:
     *others, last = certificate["fingerprint"]
     assert all(one["agreement_time"] is None and "copies" not in one for one in others)
     assert last["agreement_time"] < 9.0
@@ -162,7 +162,7 @@ def test_only_the_last_case_is_chaotic_and_keeps_the_peaks_of_copies(certificate
 
 
 def test_rounding_and_differences_within_accuracy_are_no_change(certificate: dict[str, Any]) -> None:
-    """As another version would: the ground acceleration of each sample is off by a share of its own."""
+    """A ground acceleration with a relative error in each sample, as from another version."""
     for size, words in ((1e-15, {SAME, CHAOTIC}), (3e-11, {CHAOTIC}), (1e-10, {CHAOTIC})):
         random = np.random.default_rng(17)
 
@@ -195,7 +195,7 @@ def test_copies_are_computed_only_where_something_differs(certificate: dict[str,
 
 
 def test_late_peaks_are_those_after_the_agreement_time() -> None:
-    """The start of a release is higher than all that follows, and says nothing of it."""
+    """The start of a release is its largest tilt, and is no late peak."""
     sample: Any = {
         "time": [0.0, 1.0, 2.0, 3.0],
         "copies": [[0.5, 0.1, 0.2, 0.3], [0.5, 0.0], [0.5, 0.1, 0.4]],
@@ -203,7 +203,7 @@ def test_late_peaks_are_those_after_the_agreement_time() -> None:
     assert late_peaks(sample, 2.0).tolist() == [0.3, 0.0, 0.4]
 
 
-def test_other_peaks_after_the_agreement_time_are_a_change(certificate: dict[str, Any]) -> None:
+def test_changed_peaks_after_the_agreement_time_are_a_change(certificate: dict[str, Any]) -> None:
     last = certificate["fingerprint"][-1]
     late = np.array(last["time"]) >= last["agreement_time"]
     signals = {
@@ -256,7 +256,7 @@ HEAD: dict[str, Any] = {"kind": "rockwobble certificate", "format": 3, "method":
         (HEAD | {"format": 2}, "has format 2, this version reads 3"),
     ],
 )
-def test_part_of_a_certificate_is_bad_input(
+def test_a_truncated_certificate_is_refused(
     content: Any, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "part.json"
@@ -269,7 +269,7 @@ def test_part_of_a_certificate_is_bad_input(
 
 
 @pytest.mark.slow
-def test_the_program_reads_certificates_with_numpy_alone(certificate: dict[str, Any], tmp_path: Path) -> None:
+def test_certificates_are_read_with_numpy_alone(certificate: dict[str, Any], tmp_path: Path) -> None:
     program = ROOT / "compare" / "check" / "verdict.py"
     off = json.loads(json.dumps(certificate))
     off["fingerprint"][2]["signals"]["tilt"][5] += 1e-3
@@ -297,7 +297,7 @@ def test_the_program_reads_certificates_with_numpy_alone(certificate: dict[str, 
 
 
 def test_claims_on_releases_match_their_table() -> None:
-    """docs/published/certificates.md: what is chaotic, what is the same, and by how much they differ."""
+    """Table of docs/published/certificates.md: chaotic and repeatable cases, and their differences."""
     path = ROOT / "reports" / "published" / "certificates" / "releases.csv"
     rows = list(csv.DictReader(path.read_text().splitlines()))
     assert len(rows) == 12 * 6
@@ -325,7 +325,7 @@ def test_claims_on_releases_match_their_table() -> None:
         assert largest("before", engine=engine) == largest("after", engine=engine) == 0.0
 
 
-def test_results_become_claims_and_what_did_not_run_is_said() -> None:
+def test_results_become_claims_and_missing_ones_are_stated() -> None:
     found = [
         result("exact", "period", 1e-13, 1e-12),
         result("agreement", "peak", 1e-3, 1e-2),
@@ -340,7 +340,7 @@ def test_results_become_claims_and_what_did_not_run_is_said() -> None:
         claims_of([result("exact", "period", 1.0, 1e-12)])
 
 
-def test_the_fingerprint_is_of_the_model_that_is_installed() -> None:
+def test_the_fingerprint_is_that_of_the_installed_model() -> None:
     one = next(fingerprint(models()))
     short = short_cases()[0]
     trace = reduced.simulate(short.case, support=short.support, sample_step=short.case.length / 40)

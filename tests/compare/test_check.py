@@ -1,4 +1,4 @@
-"""Each check holds for a right subject, and finds a fault of its kind."""
+"""Each check passes for a right subject, and fails for a fault of its kind."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def lighter_slab(case: Case) -> Case:
 
 
 def other_tendon(prestress: float, stiffness: float) -> Callable[[Case], Case]:
-    """A subject whose tendon is stated by so many times its constants."""
+    """Subject whose tendon has its constants multiplied by a factor."""
 
     def other(case: Case) -> Case:
         given = case.tendon
@@ -74,7 +74,7 @@ def other_tendon(prestress: float, stiffness: float) -> Callable[[Case], Case]:
 
 
 def alone(case: Case) -> Case:
-    # a tendon that misses the gap at the slab
+    # a tendon without the gap at the slab
     return other_tendon(0.5, 0.25)(case) if case.cylinder.slab_mass_ratio > 0.0 else case
 
 
@@ -107,7 +107,7 @@ def one_sided(motion: GroundMotion) -> GroundMotion:
 
 
 def lossy(right: Subject) -> Subject:
-    # of a model that states its energy and no rates, so that nothing else tells
+    # a model with an energy and no rates, so that no other check detects it
     loses = field("energy", lambda energy: energy * (1.0 - 1e-7 * np.arange(len(energy))))
     return dataclasses.replace(loses(right), knows=frozenset({"tilt", "energy"}))
 
@@ -121,7 +121,7 @@ def right() -> Subject:
 
 
 @pytest.mark.parametrize("group", [name for name in GROUPS if name not in ("agreement", "order", "protocol")])
-def test_the_reduced_models_hold(right: Subject, group: str) -> None:
+def test_the_reduced_models_pass_all_checks(right: Subject, group: str) -> None:
     found = list(run_checks(right, [group]))
     assert found
     assert len({result.name for result in found}) == len(found)
@@ -179,12 +179,12 @@ def test_the_reduced_models_hold(right: Subject, group: str) -> None:
         (restraint.balance, "recess", asked(other_tendon(1.05, 1.05))),
     ],
 )  # fmt: skip
-def test_a_check_finds_a_fault_of_its_kind(right: Subject, measure: Any, support: str, fault: Any) -> None:
+def test_a_check_detects_a_fault_of_its_kind(right: Subject, measure: Any, support: str, fault: Any) -> None:
     assert not [result for result in measure(right, support) if result.failed]
     assert [result for result in measure(fault(right), support) if result.failed]
 
 
-def test_a_subject_that_raises_fails_its_checks_and_the_others_run(right: Subject) -> None:
+def test_a_subject_that_raises_fails_its_checks_and_others_run(right: Subject) -> None:
     def source(case: Case, *_: Any, **__: Any) -> Trace:
         raise ZeroDivisionError("division by zero")
 
@@ -215,11 +215,11 @@ def outcomes(results: list[Result], outcome: str) -> set[str]:
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_a_right_model_of_somebody_else_passes_tightly(support: str) -> None:
+def test_a_right_external_model_passes_tightly(support: str) -> None:
     found = rw.check(model=without(), support=support, tolerance=1e-5).results
     assert outcomes(found, FAILED) == set()
     assert len(outcomes(found, PASSED)) > 12
-    # what asks for a field that it does not return is said
+    # a check of a missing field states it
     lacking = {"work of the ground", "uplift", "force at rest", "falls", "turning", "fields", "place"}
     assert outcomes(found, NOT_RUN) == lacking
     fewer = rw.check(model=without("azimuth", "energy"), support=support, only=["exact", "conserved"]).results
@@ -251,7 +251,7 @@ def restless(case: Case, support: str) -> dict[str, Any]:
         (restless, {"tilt below the threshold of uplift"}, {PERIOD}),
     ],
 )
-def test_a_wrong_model_of_somebody_else_fails_where_it_is_wrong(
+def test_a_wrong_external_model_fails_at_its_fault(
     model: Callable[[Case, str], Any], fails: set[str], holds: set[str]
 ) -> None:
     found = rw.check(model=model)
@@ -292,7 +292,7 @@ def test_a_model_that_returns_no_motion_is_reported() -> None:
         assert all(each.outcome == NOT_RUN and reason in each.note for each in found)
 
 
-def test_a_model_is_found_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_model_is_loaded_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "my_rocking.py").write_text("def model(case, support):\n    return {}\n")
     monkeypatch.chdir(tmp_path)
     assert subject.load_model("my_rocking:model")(None, "recess") == {}  # type: ignore[arg-type]
@@ -312,8 +312,8 @@ def checked(place: Path, trace: Trace, names: list[str], **given: Any) -> list[R
 
 
 @pytest.mark.parametrize("names", [ANGLES, ANGLES[:2], TURN], ids=["angles", "tilt", "quaternions"])
-def test_a_trajectory_is_compared_as_far_as_one_motion_tells(tmp_path: Path, names: list[str]) -> None:
-    # at its own samples, 0.03 s apart: between them nothing is as exact
+def test_a_trajectory_is_compared_as_far_as_one_motion_allows(tmp_path: Path, names: list[str]) -> None:
+    # at its own samples, 0.03 s apart: interpolation is less exact
     found = checked(tmp_path, ours(RELEASE, "recess"), names, every=6, tolerance=1e-6)
     assert outcomes(found, PASSED) == {"tilt at release", "tilt and azimuth up to 5 s", "peak tilt"}
     assert len(found) == 3
@@ -327,7 +327,7 @@ def test_a_trajectory_of_another_body_fails_and_one_without_tilt_is_refused(tmp_
 
 
 def scaled(name: str, scale: float) -> Callable[[Case, str], Trace]:
-    """Return the model with one number off, or that loses as by a rolling resistance of `scale` b."""
+    """Model with an error in one number, or with a rolling resistance of `scale` b."""
 
     def model(case: Case, support: str) -> Trace:
         loss = scale * case.cylinder.base_radius
@@ -343,7 +343,7 @@ def scaled(name: str, scale: float) -> Callable[[Case, str], Trace]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*CANDIDATES, "loss"])
-def test_the_number_that_is_off_is_named(name: str) -> None:
+def test_the_wrong_number_is_named(name: str) -> None:
     cases = [MEASURED_RELEASE, agreement.LOW_RELEASE, agreement.RAMP]
     for support, scale in (("recess", 1.05), ("flat", 0.98)):
         words = f"{name} {100.0 * (scale - 1.0):+.2g} %"
@@ -354,7 +354,7 @@ def test_the_number_that_is_off_is_named(name: str) -> None:
 
 
 @pytest.mark.slow
-def test_failures_name_their_cause_and_what_no_number_explains_none() -> None:
+def test_a_failure_names_its_cause_or_none() -> None:
     found = rw.check(model=scaled("axial inertia", 1.05), tolerance=1e-5, only=["exact", "agreement"])
     assert found.failures
     assert {each.cause for each in found.failures} == {"axial inertia +5 %"}
@@ -369,14 +369,14 @@ def test_failures_name_their_cause_and_what_no_number_explains_none() -> None:
 
 
 def kept_as(monkeypatch: pytest.MonkeyPatch, right: Subject, **changes: Any) -> baseline.Baseline:
-    """The stored baseline as if it had been made with other versions."""
+    """Stored baseline with changed versions."""
     kept = baseline.read_baseline(right)
     older = dataclasses.replace(kept, reasons=(*kept.reasons[:-1], {**kept.reasons[-1], **changes}))
     monkeypatch.setattr(baseline, "read_baseline", lambda _: older)
     return older
 
 
-def test_another_version_that_changed_something_is_no_failure_but_said(
+def test_a_change_by_another_version_is_reported_and_no_failure(
     right: Subject, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept_as(monkeypatch, right, version="0.0.1", versions={"numpy": "1.0"})
@@ -389,7 +389,7 @@ def test_another_version_that_changed_something_is_no_failure_but_said(
             assert (f"numpy 1.0 -> {np.__version__}" in each.note) == (model is wrong)
 
 
-def test_a_subject_without_a_baseline_is_said(right: Subject) -> None:
+def test_a_subject_without_a_baseline_is_reported(right: Subject) -> None:
     (found,) = baseline.same_as_baseline(dataclasses.replace(right, label="another"), "recess")
     assert (found.outcome, found.note) == (NO_BASELINE, "no baseline for another")
     for given in ({"time_step": 1e-4}, {"iterations": 60}):
@@ -397,7 +397,7 @@ def test_a_subject_without_a_baseline_is_said(right: Subject) -> None:
         assert (found.outcome, found.note) == (NOT_RUN, "kept at the default time step and settings")
 
 
-def test_an_update_keeps_the_reason_and_names_what_changes(
+def test_an_update_stores_the_reason_and_names_the_changes(
     right: Subject, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept = baseline.read_baseline(right)
@@ -474,5 +474,5 @@ def test_quadratures_are_the_exact_solutions_of_the_package() -> None:
     assert laws.tilt_inertia(SHAPE) == pytest.approx(9.0 + 36.0, rel=ROUNDING)
 
 
-def test_only_what_does_not_hold_has_a_note() -> None:
+def test_only_a_failed_check_has_a_note() -> None:
     assert [invariance._holds("kept", right, "why").note for right in (True, False)] == ["", "why"]

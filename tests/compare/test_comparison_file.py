@@ -1,4 +1,4 @@
-"""A comparison comes back from its files."""
+"""Comparisons restored from their files."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_runs_of_a_saved_comparison_are_restored(saved):
             assert trace.assumptions == loaded.assumptions
 
 
-def test_budgets_are_the_same(saved):
+def test_budgets_of_a_saved_comparison_are_restored(saved):
     first, again = (comparison.budgets for comparison in saved)
     assert list(first) == list(again)
     assert first
@@ -78,7 +78,7 @@ def test_folders_of_0_3_are_read_and_older_ones_refused_by_release(saved, tmp_pa
     columns = {"time": trace.time, "tilt [rad]": trace.tilt, "azimuth [deg]": np.degrees(trace.rolling_angle)}
     pd.DataFrame(columns).to_csv(path := tmp_path / "table.csv", index=False)
     made = comparison(CASES[0], runs=[], external=[path], workers=1)
-    # one table held all, and there was no mode
+    # version 0.3 had one table, and no mode
     whole = made.rows("release").drop(columns=["mode", "error_source", "twist_rms"])
     tables = {name: table for name, table in made.tables.items() if name != "external"}
     dataclasses.replace(made, tables=tables | {"summary": whole}).save(tmp_path / "old")
@@ -94,7 +94,7 @@ def test_folders_of_0_3_are_read_and_older_ones_refused_by_release(saved, tmp_pa
         Comparison.load(tmp_path / "older")
 
 
-def test_manifest_and_tables_say_what_made_them(saved, tmp_path):
+def test_manifest_and_tables_state_their_origin(saved, tmp_path):
     saved[0].made_by("rockwobble compare").save(tmp_path, pages={"report.md": b"# Report"})
     made = read_results(tmp_path, "comparison").manifest
     assert made.headline["rows"] == len(saved[0].summary)
@@ -106,7 +106,7 @@ def test_manifest_and_tables_say_what_made_them(saved, tmp_path):
         assert len(about["inputs"]) == 32
 
 
-def test_a_median_is_of_the_rows_and_of_six_at_least(saved):
+def test_a_median_needs_six_rows(saved):
     rows = pd.concat([saved[0].summary] * 3, ignore_index=True)
     assert len(rows) >= 6
     rows["agreement_time"] = 10.0 + np.arange(len(rows))

@@ -1,4 +1,4 @@
-"""What a comparison finds, by key and number: agreement, causes, mistakes of external files, budgets."""
+"""Findings of a comparison, by key and number: agreement, causes, mistakes of external files, budgets."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ SLOWER = TURNED | {
 
 
 def row(agreement: float = 20.0, predicted: float = 18.0, **values: Any) -> Any:
-    """A row of a summary, under shaking: the reference uplifts at 1.7 s."""
+    """Row of a summary, under shaking: the reference uplifts at 1.7 s."""
     common = {"case": "El Centro", "run": "mujoco recess", "engine": "mujoco", "support": "recess"}
     ended = {"outcome": "stands", "reference_outcome": "stands", "left_tolerance": True, "divergence": ""}
     pass_ = {"predicted_by": "pass", "closest_pass": 3e-3, "tolerance": 0.01}
@@ -82,7 +82,7 @@ def found(*rows: Any, **traces: Any) -> dict[str, Any]:
         ({}, {}, "pass"),
         ({"predicted": 30.0}, {}, "near_passes"),
         ({"predicted": 30.0, "closest_pass": math.nan}, {}, "method"),
-        # agreed for a hundred times as long as predicted: that pass is not why
+        # agreed for a hundred times as long as predicted: that pass is not the cause
         ({"predicted": 0.2}, {}, "near_passes"),
         ({"outcome": "failed"}, {}, "failed"),
         (FLAT, {}, "support"),
@@ -96,7 +96,7 @@ def found(*rows: Any, **traces: Any) -> dict[str, Any]:
         ({"mode": "rocks and slides"}, {}, "slides"),
         ({"mode": "rocks and slides", "reference_mode": "rocks and slides"}, {}, "pass"),
         (RING | {"mode": "rocks and slides"}, {}, "walls"),
-        # only what changes tilts is a reason for them to diverge
+        # only a mistake that changes tilts makes them diverge
         (TABLE | SLOWER, {}, "mistake"),
         (TABLE | TURNED, {}, "near_passes"),
     ],
@@ -110,10 +110,10 @@ def test_the_cause_of_a_divergence_follows_from_the_numbers(values, options, nam
     ("moved_by", "of_support"),
     [({"initial": InitialState(0.1), "duration": 20.0}, False), ({"motion": el_centro_1940()}, True)],
 )
-def test_the_support_divides_only_what_its_models_tell_apart(monkeypatch, moved_by, of_support):
+def test_the_support_is_a_cause_only_where_its_models_differ(monkeypatch, moved_by, of_support):
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
-    def simulated(jobs: list[Job], **_: object) -> list[Trace]:  # by an engine that errs by 0.2 % in size
+    def simulated(jobs: list[Job], **_: object) -> list[Trace]:  # an engine with an error of 0.2 % in size
         traces = []
         for job in jobs:
             off = dataclasses.replace(pier, semidiagonal=6.0 if job.run.is_model else 6.012)
@@ -134,7 +134,7 @@ def test_the_support_divides_only_what_its_models_tell_apart(monkeypatch, moved_
     assert f"comparison.{causes[0]}" in keys
 
 
-def test_agreement_is_of_the_runs_of_a_support_and_their_own_model():
+def test_agreement_is_between_runs_of_a_support_and_their_model():
     pybullet = row(run="pybullet recess", engine="pybullet", agreement=12.0)
     flat = row(**FLAT | OWN, left_tolerance=False, within_tolerance_until=LENGTH)
     recess, whole = agreements(table(row(), pybullet, row(**FLAT, agreement=2.0), flat), LENGTH)
@@ -145,7 +145,7 @@ def test_agreement_is_of_the_runs_of_a_support_and_their_own_model():
     assert value(whole, "names_reference") == ("flat-ground model",)
     (slid,) = agreements(table(row(reference_mode="slides")), LENGTH)
     assert slid.key == "comparison.agree_slide"
-    # a small motion agrees within a tenth of its peak, a measurement within its noise besides
+    # a small motion agrees within a tenth of its peak, a measurement within that and its noise
     (small,) = agreements(table(row(tolerance=2.3e-6)), LENGTH)
     (noisy,) = agreements(table(row(**TABLE | {"tilt_bound": 0.034})), LENGTH)
     assert [value(each, "difference") for each in (small, noisy)] == pytest.approx([2.3e-6, 0.034])
@@ -163,7 +163,7 @@ def test_runs_that_fail_rest_or_end_before_their_peak_are_named():
     assert "at_rest" in found(row(left_tolerance=False))
 
 
-def test_a_mistake_of_a_file_is_said_with_what_it_explains():
+def test_a_mistake_of_a_file_is_reported_with_its_effect():
     mistake = found(row(**TABLE | SLOWER))
     assert value(mistake["mistake"], "until") == 8.0  # to the end
     diverges = found(row(**TABLE | SLOWER | {"differs_without_mistake": ("tilt",)}))
@@ -201,5 +201,5 @@ def test_a_large_rest_and_an_early_end_are_cautions():
     assert [early.key, unexplained.key] == ["comparison.earlier", "comparison.unexplained"]
     assert {early.level, unexplained.level} == {"caution"}
     assert (value(unexplained, "share"), value(explained, "count")) == (0.5, 1)
-    # of external trajectories nobody can predict their end
+    # the end of an external trajectory cannot be predicted
     assert not list(budget_findings(table(row(**TABLE | {"divergence": "earlier"})), rest.iloc[:0]))

@@ -1,4 +1,4 @@
-"""The contact force of the engines against that of the reduced models, and whether friction holds it."""
+"""Contact force of the engines against that of the reduced models, and friction demands."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def _agree(run: multibody.Trajectory, model: Trace, alpha: float, start: float) 
     difference = found - expected
     size = np.linalg.norm(expected, axis=1)
     assert (np.abs(difference[:, 2]) < FORCE * expected[:, 2]).all()
-    # the horizontal force passes through zero, so it is compared with all of the force
+    # the horizontal force passes through zero, so it is compared with the whole force
     assert (np.hypot(difference[:, 0], difference[:, 1]) < FORCE * size).all()
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("tan_alpha", [0.2, 1.0])
-def test_force_of_a_free_response(engine: str, support: str, tan_alpha: float) -> None:
+def test_force_of_a_free_response_is_that_of_the_model(engine: str, support: str, tan_alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     initial = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
     run = multibody.simulate(Case(cylinder, initial=initial, duration=2.5), engine=engine, support=support)
@@ -47,20 +47,20 @@ def test_force_of_a_free_response(engine: str, support: str, tan_alpha: float) -
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_force_under_el_centro(support: str) -> None:
-    # standing, uplift and two passes; the record has a kink at every sample
+def test_force_under_el_centro_is_that_of_the_model(support: str) -> None:
+    # rest, uplift and two passes; the record has a kink at every sample
     cylinder, motion = Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940()
     run = multibody.simulate(Case(cylinder, motion, duration=6.0), support=support)
     model = reduced.simulate(Case(cylinder, motion, duration=6.0), support=support)
     _agree(run, model, cylinder.alpha, model.uplift_time + 0.1)
     standing = model.time < model.uplift_time - 0.1
-    # the window of the mean, 8 ms, rounds the corners of the record
+    # the window of the mean, 8 ms, rounds the kinks of the record
     np.testing.assert_allclose(run.contact_force[standing], model.contact_force[standing], atol=1e-3)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_a_steady_wobble_holds_where_friction_suffices_and_says_where_not(engine: str, support: str) -> None:
+def test_a_steady_wobble_reports_insufficient_friction(engine: str, support: str) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.5)
     tilt = 0.3 * cylinder.alpha
     period = reduced.wobbling_period(cylinder, tilt)
@@ -82,7 +82,7 @@ def test_a_steady_wobble_holds_where_friction_suffices_and_says_where_not(engine
     assert np.ptp(held.rolling_angle) == pytest.approx(2.0 * math.pi, rel=1e-3)
     assert held.slip[-1] < SLIP * cylinder.base_radius
     assert np.abs(held.contact_offset).max() < SLIP * cylinder.base_radius
-    # it slides in truth, which is a result and no failure; but it is said
+    # it slides, which is a diagnostic and no failure
     lost = wobble(0.8 * needed, period / 4.0)
     assert lost.outcome == "stands"
     assert lost.first("slip") < period / 4.0

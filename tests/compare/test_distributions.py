@@ -1,4 +1,4 @@
-"""Two methods on the same members: tests keep their level, intervals their coverage, both find what is there.
+"""Two methods on the same members: tests keep their level, intervals their coverage.
 
 The simulations have fixed seeds and 2000 ensembles each: a share of 0.95 is known to 0.005 (one standard
 deviation).
@@ -35,7 +35,7 @@ from rockwobble.compare.metrics.statistics import (
 ROUNDING = 1e-12
 COUNT = 22  # far-field pairs of FEMA P-695
 TRIALS = 2000
-LEVEL = 0.06  # asked of a test at 5 %
+LEVEL = 0.06  # of a test at 5 %
 UP = np.zeros(COUNT, dtype=bool)
 
 
@@ -61,7 +61,7 @@ def test_signed_ranks_are_those_of_scipy_where_it_is_exact():
     expected = wilcoxon(np.log(ours), np.log(theirs), method="exact").pvalue
     assert contrast_of(ours, theirs, UP, UP).ratio_p == pytest.approx(expected, abs=ROUNDING)
     assert contrast_of(theirs, ours, UP, UP).ratio_p == pytest.approx(expected, abs=ROUNDING)
-    # of ties, every choice of signs is tried; what overturns is larger than everything
+    # with ties, all choices of signs are counted; overturned members are the largest
     tied = np.array([0.1, -0.1, 0.2, 0.2, -0.3, 9.0, 9.0, 9.0])
     expected = wilcoxon(tied, method=PermutationMethod(n_resamples=np.inf)).pvalue
     assert signed_rank_p(tied) == pytest.approx(expected, abs=ROUNDING)
@@ -71,9 +71,9 @@ def test_signed_ranks_are_those_of_scipy_where_it_is_exact():
 
 @pytest.mark.parametrize("count", [6, 22, 301])
 @pytest.mark.parametrize("share", [0.03, 0.5, 0.84])
-def test_an_end_of_the_interval_of_a_quantile_leaves_out_its_part(count: int, share: float) -> None:
-    # of the values 1, 2, ... an end is the index of its order statistic, whose share of what is drawn has the
-    # beta distribution
+def test_the_interval_of_a_quantile_excludes_it_at_its_level(count: int, share: float) -> None:
+    # for the values 1, 2, ... an end is the index of its order statistic, whose share of the distribution has
+    # the beta distribution
     ends = quantile_interval(np.arange(1.0, count + 1.0), share)
     outside = [
         beta.sf(share, ends.low, count + 1.0 - ends.low) if math.isfinite(ends.low) else 0.0,
@@ -85,11 +85,11 @@ def test_an_end_of_the_interval_of_a_quantile_leaves_out_its_part(count: int, sh
 
 
 @pytest.mark.parametrize("total", [1, 22, 301])
-def test_an_end_of_the_interval_of_a_share_leaves_out_its_part(total: int) -> None:
+def test_the_interval_of_a_share_excludes_it_at_its_level(total: int) -> None:
     part = 0.5 * (1.0 - CONFIDENCE)
     for count in range(0, total + 1, max(1, total // 7)):
         ends = share_interval(count, total)
-        # the count, or one farther out, has this probability where the end is right
+        # probability of the count, or of one farther out, where the end is the share
         if count:
             assert binom.sf(count - 1, total, ends.low) == pytest.approx(part, rel=1e-9)
         if count < total:
@@ -123,8 +123,8 @@ def test_quantiles_of_few_and_infinite_values(values, share, expected):
     np.testing.assert_equal((found.value, found.low, found.high), expected)
 
 
-def test_agreement_is_claimed_by_the_interval_alone():
-    # at the margin itself it would be wrong, and is claimed no more often than an interval is wrong
+def test_equality_is_claimed_by_the_interval_alone():
+    # at the margin itself the claim would be wrong, and is made no more often than an interval is wrong
     edge = math.log(1.0 + MARGIN)
     claimed = []
     for values in ratios_of(shift=edge, scatter=0.03, seed=8):
@@ -133,7 +133,7 @@ def test_agreement_is_claimed_by_the_interval_alone():
     assert np.mean(claimed) <= LEVEL
     peaks = sample(1)
     scattered = peaks * np.exp(0.3 * np.random.default_rng(2).standard_normal(COUNT))
-    # what is not told apart does not agree by that, nor is what is told apart far apart
+    # methods without a significant difference need not be equal, nor need a significant difference be large
     for trial, verdict, apart in ((scattered, "undecided", False), (1.001 * peaks, "within", True)):
         found = contrast_of(trial, peaks, UP, UP)
         assert (found.verdict, found.ratio_p < 0.05) == (verdict, apart)
@@ -143,8 +143,8 @@ def test_agreement_is_claimed_by_the_interval_alone():
 
 
 @pytest.mark.parametrize("count", [COUNT, 201])
-def test_a_ratio_within_reach_is_told_with_its_power(count):
-    # the members that the reach is taken from are as many as in each ensemble, and scattered as the law
+def test_a_ratio_within_reach_is_detected_with_its_power(count):
+    # the reach is computed from as many members as each ensemble has, with the scatter of the distribution
     scatter = 0.3 * norm.ppf((np.arange(count) + 0.5) / count)
     reach = ratio_within_reach(scatter)
     ratios = ratios_of(shift=math.log(reach), scatter=0.3, count=count, seed=10)
@@ -152,8 +152,8 @@ def test_a_ratio_within_reach_is_told_with_its_power(count):
     index = end_index(count, 0.5, 0.5 * (1.0 - CONFIDENCE))
     assert index is not None
     needed = betaincinv(count + 1 - index, index, POWER)
-    # the reach is that of a member, at most one step of their shares beyond what is needed; three standard
-    # deviations of 2000 trials
+    # the reach is at most one step of the members' shares beyond the need; three standard deviations of 2000
+    # trials
     most = betainc(count + 1 - index, index, needed + 1.0 / count)
     assert POWER - 0.027 <= told <= most + 0.027
     for same in (-scatter, scatter + 0.5):
@@ -163,13 +163,13 @@ def test_a_ratio_within_reach_is_told_with_its_power(count):
 def test_no_ratio_is_within_reach_of_too_few():
     assert ratio_within_reach(np.array([0.1, 0.2, 0.3, 0.4, 0.5])) == math.inf
     assert ratio_within_reach(np.array([])) == math.inf
-    # half of them overturn by one method alone: there is no median to be told from 1
+    # half of them overturn by one method alone: there is no median
     assert ratio_within_reach(np.array([0.1] * 11 + [math.inf] * 12)) == math.inf
-    # more scatter on one side: the ratio on the other side has to make up for it
+    # more scatter on one side: the ratio on the other side has to compensate it
     assert ratio_within_reach(np.array([*np.zeros(14), *-np.ones(8)])) == pytest.approx(math.e, rel=1e-12)
 
 
-def test_overturned_members_are_larger_than_all_and_failed_ones_do_not_count():
+def test_overturned_members_are_largest_and_failed_ones_are_ignored():
     peaks = np.array([8.0, 8.0, 0.2, 0.0, 0.3, math.nan])
     against = np.array([8.0, 0.2, 8.0, 0.0, 0.2, 0.4])
     fell, fell_there = peaks == 8.0, against == 8.0
@@ -184,7 +184,7 @@ def test_overturned_members_are_larger_than_all_and_failed_ones_do_not_count():
     assert Pairs(peaks[4:], against[4:], fell[4:], fell_there[4:]).contrast() is None  # of one member
 
 
-def test_bounds_of_a_ratio_allow_failed_members_any_fate():
+def test_bounds_of_a_ratio_allow_any_outcome_of_failed_members():
     ratios = np.array([0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, math.nan])
     stands = np.zeros(8, dtype=bool)
     assert Pairs(ratios, np.ones(8), stands, stands).ratio_bounds() == pytest.approx(
@@ -192,13 +192,13 @@ def test_bounds_of_a_ratio_allow_failed_members_any_fate():
     )
 
 
-def test_who_overturns_by_one_method_alone_decides():
+def test_members_that_overturn_by_one_method_alone_decide():
     assert mcnemar_p(6, 0) == pytest.approx(2.0**-5, abs=ROUNDING)
     assert mcnemar_p(0, 0) == 1.0
     assert mcnemar_p(3, 8) == pytest.approx(binomtest(3, 11).pvalue, abs=ROUNDING)
     few = least_significant_count()
     assert mcnemar_p(few, 0) < 0.05 <= mcnemar_p(few - 1, 0)
-    # as many fall by each method, but never the same: no test of two samples would ask who they are
+    # as many fall by each method, but never the same: a test of two independent samples would miss it
     fell = np.arange(COUNT) < 8
     assert contrast_of(sample(1), sample(2), fell, np.roll(fell, 8)).overturned_p == 1.0
     assert contrast_of(sample(1), sample(2), fell, UP).overturned_p == pytest.approx(2.0**-7, abs=ROUNDING)
@@ -222,7 +222,7 @@ def test_several_probabilities_are_corrected_for_their_number():
     assert adjusted(np.array([0.03])).tolist() == [0.03]
 
 
-def test_a_median_is_stated_of_as_many_as_can_bound_it() -> None:
+def test_a_median_needs_enough_members_to_bound_it() -> None:
     # the median is outside of all n values where all lie on one side of it: 2 of 2^n
     for count in range(1, 12):
         enough = 1.0 - 2.0 * 0.5**count >= CONFIDENCE

@@ -1,4 +1,4 @@
-"""The engine and the reduced model under a strong motion: agreement, and that it could have failed."""
+"""Engine and reduced model under a strong motion: agreement, and the sensitivity of the comparison."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WINDOW = 15.0  # [s]
 # relative RMS on (6 m, 0.2) doubled, 6.4e-6 as measured
 AGREEMENT = 2e-5
 ROW = "El Centro to 15 s"  # of the README
-# the base leaves the ground in a contact of 2 steps
+# steps of contact in which the base leaves the ground
 UPLIFT_STEPS = 2
 UPLIFT_DIRECTION = math.radians(1.0)
 # work from samples 0.01 s apart, relative to the largest energy; the reduced model shows 7e-7
@@ -28,7 +28,7 @@ SAMPLING = 2e-6
 
 @pytest.fixture(scope="module")
 def run():
-    """Return a comparison of MuJoCo, in a recess, with the recess model; each case is run once."""
+    """Comparison of MuJoCo, in a recess, with the recess model; each case is run once."""
     done = {}
 
     def compared(semidiagonal, tan_alpha, scale, duration=WINDOW):
@@ -63,7 +63,7 @@ def test_engine_agrees_with_the_recess_model(run, problem):
 
 
 @pytest.mark.parametrize("factor", [0.995, 1.005])
-def test_the_comparison_has_teeth(run, factor):
+def test_the_comparison_detects_a_wrong_size(run, factor):
     case, _, trajectory = traces(run(10.0, 0.1, 1.0))
     off = dataclasses.replace(case.cylinder, semidiagonal=factor * case.cylinder.semidiagonal)
     wrong = reduced.simulate(Case(off, case.motion, duration=WINDOW))
@@ -72,7 +72,7 @@ def test_the_comparison_has_teeth(run, factor):
 
 
 @pytest.mark.slow
-def test_traces_with_passes_near_upright_agree_for_twenty_seconds_of_the_record(run):
+def test_traces_with_near_passes_agree_for_twenty_seconds(run):
     comparison = run(6.0, 0.2, 1.0, 22.0)
     row = comparison.summary.iloc[0]
     _, response, _ = traces(comparison)
@@ -81,7 +81,7 @@ def test_traces_with_passes_near_upright_agree_for_twenty_seconds_of_the_record(
     assert row.agreed_passes >= 15
 
 
-def test_energy_loss_from_the_path_equals_that_summed_by_the_engine(run):
+def test_energy_loss_from_the_path_equals_the_engines_sum(run):
     _, _, trajectory = traces(run(10.0, 0.1, 1.0))
     counted = -trajectory.energy_error[-1] / trajectory.energy.max()
     assert run(10.0, 0.1, 1.0).summary.energy_loss[0] == pytest.approx(counted, abs=SAMPLING)

@@ -50,21 +50,21 @@ def rows(case, path, **given):
 
 
 def in_other_units(table: pd.DataFrame) -> pd.DataFrame:
-    """Times in ms and places in mm."""
+    """Times in ms and positions in mm."""
     units = {"time": "time [ms]", **{name: f"{name} [mm]" for name in PLACE}}
     return (1e3 * table[[*units]]).rename(columns=units).join(table[TURN[1:]])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
-def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(in_recess, save, name):
+def test_an_exported_trajectory_has_the_metrics_of_its_run(in_recess, save, name):
     engine, external = rows(CASES[name], save(columns(in_recess[name])[ANGLES]))
     assert external["support"] == "external"
-    # an engine that turns softly at the first passes of a shaken cylinder is no mistake of a file
+    # the soft turn of an engine at the first passes of a shaken cylinder is no mistake of a file
     assert (external["differs_in"], external["likely_mistake"]) == ((), ())
     for column in ("tilt_rms", "tilt_rms_relative"):
         assert external[column] == pytest.approx(engine[column], abs=ROUNDING)
-    # a parabola through samples 0.01 s apart instead of through the engine's steps: (p dt)^4 of the tilt
+    # a parabola through samples 0.01 s apart in place of the engine's steps: (p dt)^4 of the tilt
     assert external["peak_tilt"] == pytest.approx(engine["peak_tilt"], abs=1e-5)
     assert external["turn_difference"] == pytest.approx(engine["turn_difference"], abs=1e-6)
     same = ["agreement_time", "diverged", "agreed_passes", "outcome", "closest_pass"]
@@ -72,7 +72,7 @@ def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(in_reces
     assert math.isnan(external["energy_loss"])
 
 
-def test_quaternions_and_positions_bring_twist_and_place_back(in_recess, save):
+def test_twist_and_position_follow_from_quaternions_and_mass_centre(in_recess, save):
     engine, external = rows(SHAKEN, save(in_other_units(columns(in_recess["shaken"])[[*TURN, *PLACE]])))
     assert external["tilt_rms"] == pytest.approx(engine["tilt_rms"], abs=ROUNDING)
     for column in ("residual_twist", "residual_displacement", "contact_rms"):
@@ -84,13 +84,13 @@ def test_quaternions_and_positions_bring_twist_and_place_back(in_recess, save):
 def test_uplift_passes_and_whole_turns_are_those_of_the_engine(in_recess, save):
     engine = in_recess["shaken"]
     trajectory = read_trajectory(save(columns(engine)[ANGLES]), SHAKEN)
-    # one sample: what the cube root leaves of an uplift that is not a pure ramp
+    # one sample: error of the cube root for an uplift that is not a pure ramp
     assert trajectory.uplift_time == pytest.approx(engine.uplift_time, abs=0.01)
-    # the direction turns by its own rate in the time to the first sample that leans
+    # the direction turns at its own rate until the first tilted sample
     assert trajectory.uplift_direction == pytest.approx(engine.uplift_direction, abs=0.05)
     assert np.isnan(trajectory.rolling_angle[trajectory.time < trajectory.uplift_time]).all()
     assert read_trajectory(save(columns(in_recess["release"])[ANGLES]), RELEASE).uplift_time == 0.0
-    # the first pass dips by 3e-6 rad, less than what counts as noise
+    # the first pass dips by 3e-6 rad, below the noise threshold
     own, back = engine.passes[engine.passes["time"] > 2.0], trajectory.passes
     assert len(back) == len(own) >= 2
     for name in ("time", "angle_of_turn"):  # a tenth of a sample
@@ -98,19 +98,19 @@ def test_uplift_passes_and_whole_turns_are_those_of_the_engine(in_recess, save):
     assert back["resolved"].all()
 
 
-def test_other_samples_are_brought_to_those_of_the_comparison(save):
+def test_samples_are_interpolated_to_those_of_the_comparison(save):
     case = Case(PIER, initial=RELEASE.initial, duration=4.0)
     fine, reference = reduced.simulate(case, sample_step=0.004), reduced.simulate(case)
     for every in (2, 3):
         trajectory = read_trajectory(save(columns(fine)[ANGLES].iloc[::every]), RELEASE)
         pair = make_pair(PIER, reference, trajectory)
         assert len(pair.time) >= 400
-        # a local cubic through samples 0.012 s apart at most, times p^3 of the tilt
+        # a local cubic through samples at most 0.012 s apart, times p^3 of the tilt
         assert np.abs(pair.tilt_difference).max() < 2e-5
         assert np.nanmax(np.abs(pair.rolling_angle - pair.reference_rolling_angle)) < 2e-3
 
 
-def test_a_pass_between_samples_is_inferred_from_rotation_sense_and_reported(save):
+def test_a_pass_between_samples_is_inferred_from_the_rotation_sense(save):
     start = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.01)
     case = Case(PIER, initial=start, duration=5.0, name="near")
     response = reduced.simulate(Case(PIER, initial=start, duration=5.0))
@@ -121,7 +121,7 @@ def test_a_pass_between_samples_is_inferred_from_rotation_sense_and_reported(sav
     assert trajectory.rolling_angle[-1] == pytest.approx(response.rolling_angle[-1], abs=1e-9)
 
 
-def test_a_time_offset_takes_back_a_late_clock(in_recess, save):
+def test_a_time_offset_corrects_a_late_clock(in_recess, save):
     table = columns(in_recess["shaken"])[ANGLES]
     late = table.assign(time=table["time"] + 3.0)
     with pytest.raises(ValueError, match=r"table\.csv, line 2: the trajectory begins 3 s after the start"):
@@ -137,7 +137,7 @@ def test_noise_of_a_measurement_is_no_uplift(in_recess, save):
     noisy["azimuth [rad]"] = noisy["azimuth [rad]"].fillna(0.0)
     path = save(noisy)
     assert read_trajectory(External(path=path, noise=1e-6), SHAKEN).uplift_time == 0.0
-    for noise in (None, math.radians(0.02)):  # by its own scatter, and as it is told
+    for noise in (None, math.radians(0.02)):  # by its own scatter, and as stated by the user
         quiet = read_trajectory(External(path=path, noise=noise), SHAKEN)
         # a ramp to 0.02 deg
         assert quiet.uplift_time == pytest.approx(in_recess["shaken"].uplift_time, abs=0.15)
@@ -160,14 +160,14 @@ def test_a_fall_that_outlasts_the_run_is_followed_to_the_ground(save, tilt, outc
         assert row["peak_tilt"] == row["reference_peak_tilt"]
     else:
         assert trajectory.time[-1] == length
-        # nothing of what comes after the end is told
+        # motion after the end is not read
         assert (trajectory.passes["time"] <= length).all()
         # a vertex is above the samples next to it by its curvature, p^2 theta dt^2/8 at most
         largest = response.tilt[response.time <= length].max()
         assert trajectory.peak_tilt == pytest.approx(largest, abs=3e-6)
 
 
-def test_labels_and_cases_must_be_clear(in_recess, save):
+def test_ambiguous_labels_and_cases_are_refused(in_recess, save):
     path = save(columns(in_recess["release"])[ANGLES])
     with pytest.raises(ValueError, match="each run must have its own label, got 'table' twice"):
         comparison(RELEASE, runs=[], external=[path, path])
@@ -177,7 +177,7 @@ def test_labels_and_cases_must_be_clear(in_recess, save):
         comparison(Suite([RELEASE, SHAKEN], []), external=[path])
 
 
-def test_half_turns_of_planar_motion_are_passes_and_no_turn(save: Callable[..., Path]) -> None:
+def test_half_turns_of_planar_motion_are_passes_without_twist(save: Callable[..., Path]) -> None:
     start = InitialState(0.5 * PIER.alpha)
     case = Case(PIER, initial=start, duration=6.0, name="planar")
     planar = reduced.simulate(Case(PIER, initial=start, duration=6.0), sample_step=0.005)
@@ -191,7 +191,7 @@ def test_half_turns_of_planar_motion_are_passes_and_no_turn(save: Callable[..., 
 def test_peak_is_a_vertex_and_of_a_short_file_over_its_duration(save) -> None:
     trace, coarse = reduced.simulate(SHAKEN), reduced.simulate(SHAKEN, sample_step=0.04)
     found = read_trajectory(save(columns(coarse)[ANGLES]), SHAKEN)
-    # of a parabola; the highest of these samples is 4e-5 lower
+    # vertex of a parabola; the highest of these samples is 4e-5 lower
     assert found.peak_tilt == pytest.approx(trace.peak_tilt, abs=1e-5)
     early = columns(trace)[ANGLES][trace.time <= 0.7 * trace.time[int(np.argmax(trace.tilt))]]
     row = comparison(SHAKEN, runs=[], external=[save(early)], workers=1).summary.iloc[0]

@@ -17,7 +17,7 @@ def motion(tilt, azimuth, *, noise=0.0, time=TIME):
 
 
 def swings(*peaks):
-    """Tilt of swings of one second each, each of its own peak, nearly upright in between."""
+    """Tilt in swings of one second each, with given peaks, nearly upright in between."""
     each = np.minimum(TIME.astype(int), len(peaks) - 1)
     return 1e-4 + np.array(peaks)[each] * np.sin(np.pi * TIME) ** 2
 
@@ -51,22 +51,22 @@ def test_an_azimuth_differs_by_its_bound_and_from_its_first_sample():
     assert found.azimuth.first_time == pytest.approx(math.asin(math.sqrt(0.05)) / math.pi, abs=0.01)
 
 
-def test_an_azimuth_near_the_upright_position_and_after_the_agreement_means_nothing():
+def test_azimuth_near_upright_and_after_the_agreement_is_ignored():
     upright = motion(TILT, TIME + np.where(TILT < 0.003, 2.0, 0.0))
     assert not held(motion(TILT, TIME), upright).azimuth.differs
     divergence = TILT + np.where(TIME > 3.5, 0.01 * PIER.alpha * 1.5, 0.0)
     after = motion(divergence, TIME + np.where(TIME > 3.5, 2.0, 0.0))
     assert held(motion(TILT, TIME), after).differs_in == ("tilt",)
-    # what is about to part is off already: the last fifth does not count
+    # azimuths differ before the divergence: the last fifth does not count
     before = motion(divergence, TIME + np.where(TIME > 2.9, 2.0, 0.0))
     assert held(motion(TILT, TIME), before).differs_in == ("tilt",)
-    # without a divergence all of it does
+    # without a divergence all of it counts
     assert held(motion(TILT, TIME), motion(TILT, TIME + np.where(TIME > 2.9, 2.0, 0.0))).differs_in == (
         "azimuth",
     )
 
 
-def test_a_difference_that_is_only_just_gone_is_not_explained():
+def test_a_difference_that_only_just_vanishes_is_not_explained():
     def part(size):
         return Part(first_time=math.nan if size < 1.0 else 0.0, size=size, bound=1.0)
 

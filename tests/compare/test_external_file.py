@@ -64,7 +64,7 @@ def test_every_error_of_a_trajectory_file_names_its_line(save, text):
     assert "\n" not in str(caught.value)
 
 
-# files that cannot be read as they are, and the mistake without which they can: factors of the columns
+# unreadable files, and the mistake without which they can be read: factors of the columns
 UNREADABLE = {
     "time_unit": ("time", ANGLES[:2], [1e3, 1.0], 1e3),
     "angle_unit": ("tilt", ANGLES[:2], [1.0, math.degrees(1.0)], math.degrees(1.0)),
@@ -75,7 +75,7 @@ UNREADABLE = {
 
 
 @pytest.mark.parametrize("code", UNREADABLE)
-def test_the_mistake_without_which_a_file_is_readable_is_named(save, response, code):
+def test_the_mistake_in_an_unreadable_file_is_named(save, response, code):
     concerns, names, factors, value = UNREADABLE[code]
     table = columns(response)[names] * factors
     words = Mistake(code=code, concerns=concerns, value=value).words
@@ -83,7 +83,7 @@ def test_the_mistake_without_which_a_file_is_readable_is_named(save, response, c
         read_trajectory(save(table.set_axis([names[0], *sorted(names[1:])], axis=1)), RELEASE)
 
 
-def test_other_marks_between_cells_and_units_by_option(save):
+def test_other_separators_and_units_are_set_by_options(save):
     same = read_trajectory(save(GOOD), RELEASE)
     for mark in (";", "\t"):
         silent = GOOD.replace(" [deg]", "").replace(" [s]", "").replace(",", mark)
@@ -92,7 +92,7 @@ def test_other_marks_between_cells_and_units_by_option(save):
         assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
 
 
-def test_a_file_that_is_not_there_and_options_out_of_range(tmp_path):
+def test_missing_files_and_options_out_of_range_are_refused(tmp_path):
     with pytest.raises(ValueError, match=r"cannot read the trajectory .*none\.csv: No such file"):
         read_trajectory(tmp_path / "none.csv", RELEASE)
     with pytest.raises(ValueError, match="time_offset must be finite"):
@@ -129,7 +129,7 @@ def test_times_since_1970_are_from_the_first(save, response):
     for unit in (1.0, 1e3, 1e6, 1e9):
         table = columns(response)[TURN].assign(time=unit * (1.7e9 + response.time))
         trajectory = read_trajectory(save(table), RELEASE)
-        assert trajectory.tilt == pytest.approx(response.tilt, abs=1e-6)  # the digits of such a time
+        assert trajectory.tilt == pytest.approx(response.tilt, abs=1e-6)  # digits of such a time
         assert "since 1970" in notes(trajectory)
 
 
@@ -143,13 +143,13 @@ frame,n,lean,to
 """
 
 
-def test_columns_that_an_option_names_are_read_whatever_stands_above(save):
+def test_columns_named_by_an_option_are_read_under_any_header(save):
     for asked in ("2,3 [deg],4 [deg]", "n,lean [deg],to [deg]"):
         trajectory = read_trajectory(External(path=save(MOTIVE), columns=asked.split(",")), RELEASE)
         assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
 
 
-def test_columns_that_are_not_there_are_named(save):
+def test_missing_columns_are_named(save):
     for asked, words in (
         {"n,az": "no line with the columns n, az", "n": "must be time, tilt; time, "}
     ).items():
@@ -159,7 +159,7 @@ def test_columns_that_are_not_there_are_named(save):
         read_trajectory(save(MOTIVE), RELEASE)
 
 
-def test_an_azimuth_may_be_wrapped_in_any_way(save, response):
+def test_an_azimuth_may_be_wrapped_at_any_angle(save, response):
     azimuth = np.degrees(response.rolling_angle)
     for wrapped in (azimuth, azimuth % 360.0, (azimuth + 180.0) % 360.0 - 180.0):
         table = columns(response)[ANGLES[:2]].assign(**{"azimuth [deg]": wrapped})
@@ -167,7 +167,7 @@ def test_an_azimuth_may_be_wrapped_in_any_way(save, response):
         assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
 
 
-def test_a_signed_tilt_leans_to_the_other_side(save):
+def test_a_negative_tilt_is_towards_the_opposite_azimuth(save):
     start = InitialState(tilt=0.5 * PIER.alpha, rolling_angle=0.4)
     planar = reduced.simulate(Case(PIER, initial=start, duration=4.0))
     signed = np.copysign(planar.tilt, np.cos(planar.rolling_angle - 0.4))
@@ -206,7 +206,7 @@ def test_lost_samples_are_left_out_and_counted(save, response):
         read_trajectory(save(table), RELEASE)
 
 
-def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
+def test_uneven_samples_and_a_late_first_sample_are_read(save):
     fine = reduced.simulate(Case(PIER, initial=START, duration=4.0), sample_step=0.001)
     uneven = np.cumsum(np.tile([8, 13, 9, 12], 95))
     table = columns(fine)[ANGLES].iloc[[0, *uneven]]
@@ -241,7 +241,7 @@ def test_samples_of_a_rockwobble_run_are_read_unchanged(tmp_path):
     assert found.centre_of_mass == pytest.approx(run.centre_of_mass, abs=ROUNDING)
 
 
-def test_columns_that_are_not_read_are_named_whole(tmp_path):
+def test_ignored_columns_are_named_in_full(tmp_path):
     more = [f"gauge_{number}" for number in range(30)]
     path = tmp_path / "can.csv"
     head, *samples = GOOD.splitlines()

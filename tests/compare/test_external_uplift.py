@@ -26,9 +26,9 @@ def test_uplift_of_power_law_growth_is_found_within_two_samples():
     for power, begin in itertools.product((2, 3, 4), (0.613, 0.6205)):
         tilt = 0.5 * np.maximum(time - begin, 0.0) ** power
         found = uplift(time, tilt, 0.3 + time, stands=1e-6)
-        # the cube root of another power is bent: by less than a sample; of its own, rounding
+        # the cube root of another power is curved: by less than a sample; of its own power, rounding
         assert found.time == pytest.approx(begin, abs=1e-9 if power == 3 else 0.02)
-        # the direction is that of the first sample that leans, at most (2e-6)^(1/4) s and a sample later
+        # the direction is that of the first tilted sample, at most (2e-6)^(1/4) s and a sample later
         assert 0.0 <= found.direction - (0.3 + begin) < 0.0376 + 0.02
     ones = np.ones(100)  # a release, and a body at rest
     assert uplift(time, 0.1 * ones, ones, stands=1e-3) == (0.0, 1.0, 0)
@@ -46,7 +46,7 @@ def trace_of(case, sample_step):
 
 def file_of(trace, noise=0.0, seed=0):
     generator = np.random.default_rng(seed)
-    count = np.count_nonzero(trace.time <= trace.case.length)  # not the fall after it
+    count = np.count_nonzero(trace.time <= trace.case.length)  # without the fall after it
     lean = (np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle)))[:count]
     lean = lean + noise * (generator.normal(size=len(lean)) + 1j * generator.normal(size=len(lean)))
     return pd.DataFrame(
@@ -68,13 +68,13 @@ def test_uplifts_of_right_samples_agree_within_their_uncertainty(save, body, sca
             assert not time.differs
             assert abs(direction.size) <= direction.bound, (noise, seed)
             if not noise:
-                # half a sample, and what the curvature of coarse samples, taken for noise, leaves open
+                # half a sample, and the curvature of coarse samples, which counts as noise
                 assert time.bound <= 0.5 * sample_step + 0.02
                 assert abs(direction.size) < 0.1
 
 
 @pytest.mark.parametrize("sample_step", [0.01, 0.02])
-def test_a_clock_that_is_late_shows_in_the_uplift(save, sample_step):
+def test_a_late_clock_shows_in_the_uplift(save, sample_step):
     case, late = shaken(*BODIES[0]), 0.06  # some samples
     table = file_of(trace_of(case, sample_step))
     waits = pd.DataFrame({"time": np.arange(0.0, late - 1e-9, sample_step)})
@@ -85,7 +85,7 @@ def test_a_clock_that_is_late_shows_in_the_uplift(save, sample_step):
     assert "uplift_time" in row["differs_in"]
 
 
-def test_the_first_passage_of_a_ramp_is_that_of_its_cube():
+def test_the_first_passage_of_a_ramp_is_its_cube_root():
     class Ramp:
         time = 0.01 * np.arange(200)
         tilt = 2.0 * np.maximum(time - 0.503, 0.0) ** 3

@@ -19,12 +19,12 @@ from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 DRUM = Cylinder(semidiagonal=1.0, tan_alpha=0.35)
-LITTLE = Cylinder(semidiagonal=0.3, tan_alpha=0.2)  # of which few samples tell a swing
+LITTLE = Cylinder(semidiagonal=0.3, tan_alpha=0.2)  # body with few samples in a swing
 SQUAT = Cylinder(semidiagonal=3.0, tan_alpha=1.0)
 
 
 def released(name, body, tilt, rate, azimuth=0.0, length=6.0):
-    time = math.sqrt(body.semidiagonal / 6.0)  # Froude: of a cylinder of 6 m
+    time = math.sqrt(body.semidiagonal / 6.0)  # Froude scale, from a cylinder of 6 m
     start = InitialState(tilt=tilt * body.alpha, rolling_rate=rate / time, rolling_angle=azimuth)
     return Case(body, initial=start, duration=length * time, name=name)
 
@@ -59,7 +59,7 @@ def response(name, model="recess", sample_step=0.01):
 
 
 def samples(name, kind="both", *, model="recess", sample_step=0.01, noise=0.0, seed=0) -> pd.DataFrame:
-    """A file: "angles", "both" with the path, "mass", which is the path alone, or "tilt"."""
+    """Columns of a file: "angles", "both" with the path, "mass", which is the path alone, or "tilt"."""
     trace, body = response(name, model, sample_step), CASES[name].cylinder
     generator = np.random.default_rng(seed)
     lean = trace.tilt * np.exp(1j * np.nan_to_num(trace.rolling_angle))
@@ -96,7 +96,7 @@ KINDS = [("mass", "recess")] + [(k, m) for k in ("angles", "both", "tilt") for m
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(len(CASES)))
-def test_a_right_trajectory_follows_its_model_and_is_accused_of_nothing(save, number):
+def test_a_right_trajectory_follows_its_model_without_mistakes(save, number):
     name = list(CASES)[number]
     for kind, model in (KINDS[number % len(KINDS)], KINDS[(number + 3) % len(KINDS)]):
         case, other = CASES[name], {"recess": "flat", "flat": "recess"}[model]
@@ -105,7 +105,7 @@ def test_a_right_trajectory_follows_its_model_and_is_accused_of_nothing(save, nu
             table = samples(name, kind, model=model, sample_step=sample_step, noise=noise)
             trajectory = read_trajectory(save(table), case)
             assert judged(trajectory, response(name, model), case).differs_in == (), (kind, sample_step)
-            # the other model is another cylinder: it may differ, but by no mistake of the file
+            # against the model of another cylinder: a difference, but no mistake of the file
             assert judged(trajectory, response(name, other), case).mistakes == (), (kind, sample_step)
 
 
@@ -136,10 +136,10 @@ def later(table, delay):
 @pytest.mark.parametrize(
     ("start", "code"),
     [
-        # beyond the balance all goes with its rate p: the size is wrong, or gravity
+        # beyond the balance motion scales with the rate p: the size is wrong, or gravity
         (InitialState(1.2 * PIER.alpha), ["time_scale"]),
         (InitialState(1.02 * PIER.alpha, rolling_rate=0.1), ["time_scale"]),
-        # spin and a rate of the tilt have times of their own: it is later by more the longer it falls
+        # spin and a rate of the tilt have other time scales: the delay grows during the fall
         (InitialState(0.5 * PIER.alpha, rolling_rate=1.5), []),
         (InitialState(0.9 * PIER.alpha, tilt_rate=0.3, rolling_rate=0.2), []),
     ],
@@ -156,7 +156,7 @@ def test_a_fall_of_another_size_is_no_offset_of_the_clock(save, start, code):
 
 DEG, XYZ = ("tilt [deg]", "azimuth [deg]"), ("x", "y", "z")
 DEGREES, RADIAN = math.degrees(1.0), math.radians(1.0)
-# what is done to a file, and what is to be named: what it concerns, code, value (None: there is none)
+# change of a file, and the mistake expected: its quantity, code, value (None: no value)
 MISTAKES = {
     "a quarter": (lambda t: turned(t, 90.0), "axes", "turned_counterclockwise", None),
     "a quarter back": (lambda t: turned(t, -90.0), "axes", "turned_clockwise", None),
@@ -188,7 +188,7 @@ def test_a_mistake_is_named_with_its_value(save, mistake):
         assert found.differs_in
         assert named(found) == [(concerns, code)]
         wanted = math.nan if value is None else value
-        # the fit: a fiftieth
+        # accuracy of the fit: a fiftieth
         assert found.mistakes[0].value == pytest.approx(wanted, rel=0.02, nan_ok=True)
         assert found.differs_without_mistake == ()
 
@@ -207,7 +207,7 @@ def test_two_mistakes_are_both_named(save):
 
 @pytest.mark.parametrize("name", ["planar", "hardly moves"])
 def test_a_sign_is_named_before_an_offset(save, name):
-    # while the height hardly changes, twice its value taken off would do as well
+    # while the height hardly changes, an offset of twice its value would fit as well
     assert named(verdict(name, save(scaled(samples(name), -1.0, "z")))) == [("path", "z_reversed")]
 
 
@@ -244,7 +244,7 @@ def test_y_that_points_up_in_the_path_alone_is_named(save):
     assert named(found) == [("path", "y_up")]
 
 
-def test_planar_motion_cannot_tell_a_turn_from_a_mirror(save):
+def test_planar_motion_names_a_rotation_where_a_mirror_fits_too(save):
     turn = 2.0 * math.degrees(0.5)  # of a mirror image: its plane is at 0.5 rad
     found = verdict("planar", save(turned(samples("planar", "angles"), 90.0 + turn, mirrored=True)))
     assert named(found) == [("azimuth", "turned_counterclockwise")]
@@ -273,9 +273,9 @@ def test_another_size_or_gravity_is_the_time_scale_of_a_release(save, name, othe
         table = other_body(name, **changes)
         table["azimuth [rad]"] += math.radians(azimuth)
         found = verdict(name, save(table))
-        # an azimuth that is turned is no reason for tilts to differ, and is named beside it
+        # a rotated azimuth is no cause of a tilt difference, and is named besides
         assert [mistake.code for mistake in found.mistakes] == ["time_scale", *codes]
-        # a spin that is not scaled with it adds a tenth
+        # an unscaled spin adds a tenth
         assert found.mistakes[0].value ** 2 - 1.0 == pytest.approx(size - 1.0, rel=0.12)
         assert [mistake.changes_tilt for mistake in found.mistakes] == [True] + [False] * len(codes)
 
@@ -302,8 +302,8 @@ def test_another_start_is_no_mistake_of_the_file(save, name):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["pier wobbles", "pier passes", "planar"])
-def test_a_motion_that_dies_away_loses_energy_and_has_no_other_time_scale(save, name):
-    for loss in (0.005, 0.03):  # of the tilt, a second
+def test_decaying_motion_loses_energy_and_has_no_other_time_scale(save, name):
+    for loss in (0.005, 0.03):  # share of the tilt lost in a second
         table = samples(name)
         table["tilt [deg]"] *= np.exp(-loss * table["time"])
         codes = {each.code for each in verdict(name, save(table)).mistakes}
@@ -311,10 +311,10 @@ def test_a_motion_that_dies_away_loses_energy_and_has_no_other_time_scale(save, 
 
 
 @pytest.mark.parametrize("resistance", [0.01, 0.03])
-def test_the_rolling_resistance_of_a_trajectory_is_found(save, resistance):
+def test_the_rolling_resistance_of_a_trajectory_is_identified(save, resistance):
     found = verdict("pier wobbles", save(other_body("pier wobbles", rolling_resistance=resistance)))
     assert found.likely_mistake == ("energy_loss", "rolling_resistance")
-    # the finest of the lengths that are tried are 2 % apart
+    # the finest lengths tried are 2 % apart
     assert found.likely_mistake_value[1] == pytest.approx(resistance, rel=0.05)
 
 
@@ -331,12 +331,12 @@ def test_missing_columns_are_reported_and_not_compared(save):
 
 def test_a_trajectory_of_another_problem_gets_no_explanation(save):
     found = verdict("pier wobbles", save(samples("pier shaken")))
-    # one sample that an offset would bring to its place is no path that agrees
+    # one sample at which an offset would fit is no path that agrees
     assert (found.differs_in, found.mistakes) == (("tilt",), ())
     assert (found.not_compared, found.not_given) == (("azimuth", "path"), ())
 
 
-def test_a_verdict_is_a_row_of_its_own_table(save, tmp_path):
+def test_a_verdict_is_a_row_of_a_separate_table(save, tmp_path):
     path = save(turned(samples("pier shaken", "angles"), 90.0))
     found = comparison(CASES["pier shaken"], runs=[], external=[path], workers=1, out=tmp_path / "out")
     (row,) = found.external.to_dict("records")
@@ -351,7 +351,7 @@ def test_a_verdict_is_a_row_of_its_own_table(save, tmp_path):
     assert not found.summary["diverged"].any()  # the tilts agree
     assert row["differs_in"] == ("azimuth", "uplift_direction")
     assert row["azimuth_rms"] == pytest.approx(90.0, abs=0.1)
-    # from the first lean of more than 5 % of the largest on
+    # from the first tilt of more than 5 % of the largest on
     assert response("pier shaken").uplift_time < row["azimuth_differs_from"] < 3.0
     assert (row["likely_mistake"], row["likely_mistake_in"]) == (("turned_counterclockwise",), ("azimuth",))
     assert row["not_compared"] == row["not_given"] == ("path",)

@@ -38,12 +38,12 @@ def job(run: Run = MODEL, name: str = "a", label: str = "b", **changes) -> Job:
     return Job(case=Case(name=name, **case), run=run, label=label)
 
 
-def test_different_values_have_different_names():
+def test_different_values_have_different_hashes():
     names = [fingerprint(value) for value in VALUES]
     assert len(set(names)) == len(names)
 
 
-def test_equal_values_have_one_name():
+def test_equal_values_have_one_hash():
     assert fingerprint(np.float64(0.5)) == fingerprint(0.5)
     assert fingerprint((1, 2)) == fingerprint([1, 2])
     assert fingerprint({"x": 1, "y": 2}) == fingerprint({"y": 2, "x": 1})
@@ -51,19 +51,19 @@ def test_equal_values_have_one_name():
     assert fingerprint(columns) == fingerprint(np.ascontiguousarray(columns))
 
 
-def test_the_name_is_that_of_another_process():
+def test_the_hash_is_equal_in_another_process():
     module = "rockwobble.compare.storage.provenance"
     code = f"import {module} as there; print(there.fingerprint({{'a': [0.1, 'x', None]}}))"
     there = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert there.strip() == fingerprint({"a": [0.1, "x", None]})
 
 
-def test_unhashable_options_have_no_cache_name():
+def test_unhashable_options_have_no_cache_key():
     with pytest.raises(ValueError, match=r"input of type object"):
         fingerprint({"a": object()})
 
 
-def test_each_input_of_a_run_is_in_its_name():
+def test_each_input_of_a_run_changes_its_hash():
     jobs = [
         job(),
         job(Run(None, "flat")),
@@ -83,12 +83,12 @@ def test_each_input_of_a_run_is_in_its_name():
         job(rolling_resistance=0.02),
     ]
     assert len({job_fingerprint(each) for each in jobs}) == len(jobs)
-    # names of case and run are not, nor what is left out
+    # names of case and run are left out, as are defaults
     for same in (job(name="x", label="y"), job(rolling_resistance=0.0)):
         assert job_fingerprint(same) == job_fingerprint(job())
 
 
-def test_code_and_versions_are_in_the_name(monkeypatch):
+def test_code_and_versions_change_the_hash(monkeypatch):
     before = job_fingerprint(job())
     monkeypatch.setattr("rockwobble.compare.storage.provenance._source_digest", lambda folder: "another")
     assert job_fingerprint(job()) != before
@@ -97,7 +97,7 @@ def test_code_and_versions_are_in_the_name(monkeypatch):
     assert job_fingerprint(job()) != before
 
 
-def test_scenes_of_an_engine_are_code(tmp_path: Path) -> None:
+def test_scenes_of_an_engine_count_as_code(tmp_path: Path) -> None:
     scene = tmp_path / "scenes" / "recess.xml"
     scene.parent.mkdir()
     (tmp_path / "engine.py").write_text("")
@@ -119,7 +119,7 @@ class Own(MujocoEngine):
 
 @pytest.fixture
 def own_engine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], dict[str, str]]:
-    """Install an engine of another package with this source, and return what makes its runs."""
+    """Install an engine of another package with this source; return the hash inputs of its runs."""
     about = tmp_path / "external-1.0.dist-info"
     about.mkdir()
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: external\nVersion: 1.0\n")
@@ -129,13 +129,13 @@ def own_engine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str
     def made(source: str) -> dict[str, str]:
         (tmp_path / "own_engine.py").write_text(source)
         monkeypatch.delitem(sys.modules, "own_engine", raising=False)
-        provenance._of_another_package.cache_clear()  # kept for a process, in which no code changes
+        provenance._of_another_package.cache_clear()  # cached for a process, in which no code changes
         return provenance.engine_makers("own")
 
     return made
 
 
-def test_an_engine_of_another_package_that_changed_makes_other_runs(
+def test_a_changed_engine_of_another_package_changes_the_hash(
     own_engine: Callable[[str], dict[str, str]],
 ) -> None:
     first, changed, again = (own_engine(source) for source in (SOURCE, SOURCE + "# changed\n", SOURCE))
@@ -145,7 +145,7 @@ def test_an_engine_of_another_package_that_changed_makes_other_runs(
     assert "mujoco" not in first
 
 
-def test_the_commit_of_a_checkout_says_that_code_was_changed(
+def test_the_commit_of_a_checkout_states_changed_code(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def git(*arguments: str) -> str:

@@ -1,4 +1,4 @@
-"""A comparison that was ended resumes."""
+"""An interrupted comparison resumes."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0, name="release")
-# the largest step that contact allows: what is tested is what becomes of a run
+# largest step that contact allows: the test is of storage, not of the motion
 GUIDED, FREE = Run("mujoco", "recess", 1e-3), Run("mujoco", "flat", 1e-3)
 MODEL = Run(None, "recess")
 
 
 @pytest.fixture
 def counted(monkeypatch) -> list[str]:
-    """Labels of the jobs that really run."""
+    """Labels of the jobs that run, not read from the cache."""
     ran: list[str] = []
     run_job = execution.run_job
 
@@ -39,7 +39,7 @@ def run(folder, *runs: Run) -> list[Trace]:
         return simulate_all([Job(case=CASE, run=run) for run in runs], workers=1, cache=cache)
 
 
-def test_a_second_comparison_repeats_nothing_and_finds_the_same(tmp_path, counted):
+def test_a_second_comparison_runs_nothing_and_is_equal(tmp_path, counted):
     first = comparison(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
     assert counted[:2] == ["recess model", "mujoco recess"]
     counted.clear()
@@ -49,7 +49,7 @@ def test_a_second_comparison_repeats_nothing_and_finds_the_same(tmp_path, counte
 
 
 @pytest.mark.parametrize("method", [GUIDED, MODEL])
-def test_every_field_is_kept_to_the_last_bit(tmp_path, method):
+def test_every_field_is_stored_to_the_last_bit(tmp_path, method):
     (trace,) = run(tmp_path, method)
     (kept,) = run(tmp_path, method)
     pd.testing.assert_frame_equal(trace.to_frame(), kept.to_frame(), check_exact=True)
@@ -66,7 +66,7 @@ def test_every_field_is_kept_to_the_last_bit(tmp_path, method):
     assert dict(trace.settings) == dict(kept.settings)
 
 
-def test_only_what_is_missing_runs_and_results_come_in_their_order(tmp_path, counted):
+def test_only_missing_runs_are_made_and_the_order_is_unchanged(tmp_path, counted):
     run(tmp_path, MODEL, FREE)
     counted.clear()
     found = run(tmp_path, GUIDED, FREE, MODEL)

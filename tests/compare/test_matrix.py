@@ -1,4 +1,4 @@
-"""Who agrees with whom: engine against engine, not only against the model."""
+"""Agreement matrix: engine against engine, not only against the model."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ def matrix(cylinder, motions):
     return agreement_matrix({"a": case}, motions)
 
 
-def test_every_two_on_one_support_where_two_engines_ran(matrix) -> None:
+def test_a_matrix_has_each_pair_on_one_support(matrix) -> None:
     assert list(matrix.columns) == list(MATRIX_COLUMNS)
     assert set(matrix["support"]) == {"recess"}
     assert len(matrix) == 6
     assert not (matrix["run"] == matrix["other"]).any()
 
 
-def test_the_numbers_are_those_of_the_two(matrix, motions, cylinder) -> None:
+def test_the_matrix_has_the_numbers_of_each_pair(matrix, motions, cylinder) -> None:
     rows = matrix.set_index(["run", "other"])
     both = rows.loc["mujoco recess", "dart recess"]
-    # apart by 2e-3 alpha, and from 0.5 s on by 18e-3 alpha
+    # difference of 2e-3 alpha, and from 0.5 s on of 18e-3 alpha
     assert both["diverged"]
     assert both["agreement_time"] == pytest.approx(0.5)
     assert both["tilt_rms"] == pytest.approx(np.sqrt((50 * 2e-3**2 + 51 * 18e-3**2) / 101))
@@ -63,6 +63,6 @@ def test_the_agreement_matrix_has_a_row_and_column_per_run(matrix) -> None:
     assert [heading for _, heading, _ in table["columns"]] == ["recess", "mujoco", "dart", "model"]
     ends = [table["rows"][0][name] for name in ("mujoco recess", "dart recess", "recess model")]
     assert ends == [None, "0.50 s", "1.00+ s"]
-    # of many cases they are counted
+    # counts over many cases
     (table,) = matrix_tables(pd.concat([matrix, matrix.assign(case="b", diverged=False)]))
     assert table["rows"][0]["dart recess"] == "1 of 2"

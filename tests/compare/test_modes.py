@@ -33,7 +33,7 @@ def test_reference_follows_the_mode() -> None:
     assert models_of(released, flat) == flat.compared_with
 
 
-def test_slides_part_by_a_share_of_the_peak_displacement() -> None:
+def test_slides_diverge_by_a_share_of_the_peak_displacement() -> None:
     case = rw.Case(CASK, AROUND, friction=0.3)
     slide = reduced.simulate(case, support="flat")
     assert start_of(slide) == pytest.approx(0.25 + 0.25 * 0.3 * 9.81 / 6, abs=0.01)
@@ -49,6 +49,6 @@ def test_engine_closes_as_the_planar_model_by_momentum() -> None:
     found = rw.comparison(case, runs=[rw.Run("mujoco", "flat", 2e-4)], workers=1)
     (row,) = found.summary.itertuples()
     assert (row.reference, row.mode) == ("planar model by momentum", "rocks in one plane")
-    assert {label for _, label in found.traces} == {row.run, row.reference}  # which is its own model as well
+    assert {label for _, label in found.traces} == {row.run, row.reference}  # that model is also its own
     assert not row.diverged
     assert row.peak_tilt_difference == pytest.approx(0.0, abs=0.005)  # of 0.13 alpha

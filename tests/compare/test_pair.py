@@ -24,13 +24,13 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_cen
 
 ROUNDING = 1e-12  # sums of some thousand terms of order one
 GRID = 1e-3  # a mean over samples against the integral: one sample more than a whole period
-# the path is known at samples 0.01 s apart: what the fourth differences leave of the work
+# work from a path with samples 0.01 s apart: error of fourth differences
 SAMPLING = 2e-5
 TIME = np.arange(1001) * 0.01
 
 
 @pytest.mark.parametrize("shift", [1e-4, 1.0, math.pi])
-def test_rms_of_a_shifted_sine(cylinder, make_trace, shift):
+def test_rms_of_a_shifted_sine_is_its_closed_form(cylinder, make_trace, shift):
     time = np.arange(2001) * 0.005
     reference, trial = (
         make_trace(time, cylinder.alpha * (0.5 + 0.25 * np.sin(2.0 * np.pi * time + by)))
@@ -53,8 +53,8 @@ def test_relative_rms_counts_only_up_to_the_end_of_its_window(cylinder, make_tra
         return tilt_rms_relative(make_pair(cylinder, reference, trial, until=until))
 
     assert relative_rms(until=5.0) == 0.0
-    # from 2 s to 10 s there are 801 samples, and 500 of them are off by a third: the rest before uplift,
-    # where both stand, weighs on neither side
+    # from 2 s to 10 s there are 801 samples, and 500 of them differ by a third: the rest before uplift, where
+    # both stand, counts on neither side
     assert relative_rms() == pytest.approx(math.sqrt(500 / 801) / 3.0, rel=ROUNDING)
     assert relative_rms(until=7.5) == pytest.approx(math.sqrt(250 / 551) / 3.0, rel=ROUNDING)
     still = make_trace(TIME, np.zeros_like(TIME), uplift_time=math.nan)
@@ -97,25 +97,25 @@ def test_turns_are_counted_up_to_the_end_of_agreement(cylinder, make_trace):
     assert turn_difference(pair, until=2.5) == pytest.approx(2.5, rel=ROUNDING)
     resting = np.where(TIME > 4.0, np.nan, 2.0 * TIME)
     lands = make_trace(TIME, np.where(TIME > 4.0, 0.0, 0.05), rolling_angle=resting)
-    # the last sample with both tilted
+    # last sample with both tilted
     assert turn_difference(make_pair(cylinder, lands, fast), until=10.0) == pytest.approx(4.0)
     never = make_trace(TIME, np.zeros_like(TIME), rolling_angle=np.full_like(TIME, np.nan))
     assert math.isnan(turn_difference(make_pair(cylinder, never, fast), until=10.0))
 
 
 @pytest.mark.parametrize("turns", [-3, 1])
-def test_an_azimuth_named_whole_turns_apart_is_the_same(cylinder, make_trace, turns):
+def test_azimuths_whole_turns_apart_are_equal(cylinder, make_trace, turns):
     one = rolling(cylinder, make_trace, 2.0, offset=3.1)
     other = rolling(cylinder, make_trace, 2.0, offset=3.1 + 0.2 + 2.0 * math.pi * turns)
     direction = direction_difference(one, other)
     assert direction == pytest.approx(0.2, abs=ROUNDING)
     pair = make_pair(cylinder, one, other)
-    # the direction of uplift may be known less well than the azimuth of the first tilted sample
+    # the direction of uplift may be less certain than the azimuth of the first tilted sample
     for known in (direction, 0.5):
         assert turn_difference(pair, until=10.0, direction_difference=known) == pytest.approx(0.2, abs=1e-11)
 
 
-def test_direction_difference_is_trial_minus_reference_across_the_cut(cylinder, make_trace):
+def test_direction_difference_is_trial_minus_reference_across_pi(cylinder, make_trace):
     one, other, half, none = (
         rolling(cylinder, make_trace, 1.0, offset=offset)
         for offset in (math.pi - 0.1, 0.1 - math.pi, math.pi, 0.0)
@@ -132,7 +132,7 @@ def test_first_unresolved_pass_is_after_the_start(make_trace):
         assert first_unresolved_pass(trace, start=start) == expected
 
 
-def test_contact_points_that_are_not_known_are_masked(cylinder, make_trace):
+def test_unknown_contact_points_are_masked(cylinder, make_trace):
     one, other = (rolling(cylinder, make_trace, 2.0, offset=offset) for offset in (0.0, 0.3))
     # a chord of the unit circle
     assert contact_rms(make_pair(cylinder, one, other)) == pytest.approx(2.0 * math.sin(0.15), rel=ROUNDING)
@@ -145,14 +145,14 @@ def test_contact_points_that_are_not_known_are_masked(cylinder, make_trace):
 def test_contact_points_count_only_where_both_are_tilted(cylinder, make_trace):
     high, phi = 0.3 * cylinder.alpha, 2.0 * TIME
     reference = make_trace(TIME, np.where(TIME < 5.0, high, 0.04 * high), rolling_angle=phi)
-    # 0.3 rad off before 2 s; opposite where one of the two is below 5 % of the reference's peak
+    # 0.3 rad apart before 2 s; opposite where one of the two is below 5 % of the reference's peak
     off = np.where(TIME < 2.0, 0.3, np.where(TIME < 5.0, 0.0, np.pi))
     off = np.where((TIME > 3.0) & (TIME < 5.0), np.pi, off)
     low = np.where((TIME > 3.0) & (TIME < 5.0), 0.04 * high, high)
     trial = make_trace(TIME, low, rolling_angle=phi + off)
     expected = 2.0 * math.sin(0.15) * math.sqrt(200 / 301)  # 200 of the 301 samples that count
     assert contact_rms(make_pair(cylinder, reference, trial)) == pytest.approx(expected, rel=ROUNDING)
-    # then just above 5 % of that peak: below 5 % of alpha, and of the trial's own peak; at last just below
+    # just above 5 % of that peak: below 5 % of alpha, and of the trial's own peak; at last just below
     share = np.where(TIME < 4.0, 1.0, np.where(TIME < 8.0, 0.0502, 0.0498))
     reference = make_trace(TIME, high * share, rolling_angle=phi)
     trial = make_trace(TIME, high * np.where(TIME < 4.0, 3.0, share), rolling_angle=phi + 0.3 * (TIME >= 4.0))
@@ -172,23 +172,23 @@ def test_largest_differences_are_those_before_the_end_of_agreement(cylinder, mak
     )
     agreement = Agreement(length=5.0, end=5.0, diverged=diverged, tested=True)
     largest = largest_differences(pair, agreement, unresolved=2.9, direction_difference=3.0)
-    # the sample at the divergence is the first that does not agree
+    # the sample at the divergence is the first outside of the agreement
     assert largest == pytest.approx((0.002 if diverged else 0.5, 2.0 * math.sin(0.1), 0.2))
     # a whole turn counts where each pass is resolved
     assert largest_differences(pair, agreement, unresolved=math.inf)[2] == pytest.approx(2.0 * math.pi - 0.2)
 
 
-def test_energy_lost_in_free_motion_is_the_difference(make_trace):
+def test_energy_loss_in_free_motion_is_start_minus_end(make_trace):
     tilt = np.full_like(TIME, 0.1)
     for energy, loss in ((2.0 - 0.05 * TIME, 0.25), (0.0 * TIME, 0.0), (np.nan * TIME, math.nan)):
         assert energy_loss(make_trace(TIME, tilt, energy=energy), None) == pytest.approx(loss, nan_ok=True)
 
 
 @pytest.mark.parametrize("record_step", [0.005, 0.02, 0.013])
-def test_work_of_the_ground_is_no_loss(make_trace, record_step):
+def test_work_of_the_ground_counts_as_no_loss(make_trace, record_step):
     """A free mass on moving ground moves by -u relative to it; its energy is the work of -a."""
     own = np.arange(0.0, 8.0 + 0.5 * record_step, record_step)
-    # it fades out, because the fine sums below know no jump
+    # fades out, because the fine sums below have no jump
     a = np.column_stack([np.sin(2.0 * own), 0.5 * np.cos(3.0 * own)]) * (1.0 - own / own[-1])[:, None]
     motion = GroundMotion(a, record_step)
     h = 1.25e-4
@@ -211,8 +211,8 @@ def test_the_reduced_model_loses_nothing(cylinder):
     assert energy_loss(shaken, motion) == pytest.approx(0.0, abs=SAMPLING)
 
 
-def test_the_work_between_two_samples_counts(cylinder: Cylinder) -> None:
+def test_the_work_of_the_ground_between_two_samples_counts(cylinder: Cylinder) -> None:
     push = GroundMotion([[3.0, 0.0], [3.0, 0.0]], 0.3)
     trace = reduced.simulate(Case(cylinder, push, duration=0.003))
     assert len(trace.time) == 2
-    assert energy_loss(trace, push) == pytest.approx(0.0, abs=0.01)  # of 1, which is all of the motion's
+    assert energy_loss(trace, push) == pytest.approx(0.0, abs=0.01)  # of the largest energy, 1

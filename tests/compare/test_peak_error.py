@@ -42,7 +42,7 @@ def test_the_largest_part_gives_the_error_and_its_source() -> None:
         (motion(0.6, engine), {"model": 0.2, "copy": 0.05}, (0.2, "model form")),
         (motion(0.6, engine), {"model": 0.02, "copy": 0.05}, (0.1, "step")),
         (motion(0.6, engine, settled), {"model": 0.2}, (0.3, "step")),
-        # of two peaks of which one overturns no number is the difference
+        # two peaks of which one overturned have no difference
         (motion(0.5, model), {"model": -7.5, "copy": 0.2}, (math.inf, "model form")),
         (motion(0.5, model), {"copy": 7.5}, (math.inf, "copies")),
         (motion(8.0, engine), {}, (math.inf, "step")),

@@ -1,4 +1,4 @@
-"""What ends an agreement, and whether it ended when it had to."""
+"""Causes that end an agreement, and verdicts on the prediction."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def case(cylinder):
 
 
 def traces_of(case: Case, make_trace, uplift: float):
-    """Traces that differ by so many alpha from uplift on, and copies that part e-fold in each second."""
+    """Traces with a difference in alpha from uplift on, and copies that diverge e-fold in each second."""
     after = np.maximum(TIME - uplift, 0.0)
     level = np.where(uplift > TIME, 0.0, 0.3 * case.cylinder.alpha)
 
@@ -43,7 +43,7 @@ def traces_of(case: Case, make_trace, uplift: float):
 
 @pytest.mark.parametrize("uplift", [0.0, 2.0])
 def test_the_first_of_three_causes_ends_the_agreement(case, cylinder, make_trace, uplift):
-    if uplift:  # the first second is that after uplift, as after a release
+    if uplift:  # the first second after uplift, as after a release
         case = Case(cylinder, GroundMotion(np.ones((1001, 2)), 0.01), name="synthetic")
     trace, simulate = traces_of(case, make_trace, uplift)
 
@@ -66,11 +66,11 @@ def test_the_first_of_three_causes_ends_the_agreement(case, cylinder, make_trace
     assert found(tolerance=1e-3) == ("growth", pytest.approx(np.log(1e2 * 1.787), abs=0.02))
     assert found([(4.0, 1e-6), (2.0, 1e-4)]) == ("pass", 4.0)
     assert found([(4.0, 1e-6)], form=3.0) == ("model form", pytest.approx(3.0))
-    assert found(error=1e-9) == ("", 10.0)  # a small error and no close pass end nothing
+    assert found(error=1e-9) == ("", 10.0)  # a small error without a close pass ends no agreement
 
 
-def test_upright_itself_ends_an_agreement_though_a_fall_follows(cylinder):
-    # past upright once, and over: no later maximum makes a pass of it
+def test_an_exactly_upright_pass_before_a_fall_ends_the_agreement(cylinder):
+    # upright once, then overturned: without a later maximum it is no pass
     time = np.arange(102) * 0.01
     pulse = 4.0 * 9.81 * cylinder.tan_alpha * np.sin(2.0 * np.pi * np.minimum(time, 1.0))
     motion = GroundMotion(np.column_stack([pulse, np.zeros_like(pulse)]), 0.01)
@@ -98,7 +98,7 @@ def test_upright_itself_ends_an_agreement_though_a_fall_follows(cylinder):
         (4.9, True, 10.0, "", "earlier"),
     ],
 )
-def test_verdict(measured, diverged, predicted, reason, expected):
+def test_the_verdict_follows_from_both_times(measured, diverged, predicted, reason, expected):
     assert verdict(measured, diverged, predicted, reason) == expected
 
 

@@ -44,7 +44,7 @@ def test_default_runs_cover_installed_engines_in_recess_and_flat():
 
 
 def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, case):
-    name = standard_engines()[1]  # PyBullet, or what takes its place where that has no wheel
+    name = standard_engines()[1]  # PyBullet, or its replacement where it has no wheel
     package, find = engine_packages()[name], importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda asked: None if asked == package else find(asked))
     assert name not in available_engines()
@@ -66,14 +66,14 @@ def test_a_suite_replaces_an_engine_that_has_no_wheel(monkeypatch):
     assert found == [
         Run("mujoco", "recess"),
         Run("mujoco", "ring"),
-        Run("dart", "recess"),  # in the place of PyBullet, and once
-        Run("dart", "ring"),  # as it was asked for, and will be refused
+        Run("dart", "recess"),  # in place of PyBullet, and once
+        Run("dart", "ring"),  # unchanged, to be refused
     ]
     assert said == ["pybullet has no wheel here, dart takes its place"]
     assert Run("pybullet", "recess") in runs_here(runs, ["pybullet"])[0]  # to be refused by name
 
 
-def test_a_suite_drops_missing_engines_and_keeps_extras(monkeypatch):
+def test_a_suite_drops_missing_engines_but_not_extras(monkeypatch):
     packages, find = engine_packages().values(), importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in packages else find(name))
     name = standard_engines()[0]
@@ -83,12 +83,12 @@ def test_a_suite_drops_missing_engines_and_keeps_extras(monkeypatch):
     assert re.fullmatch(rf"{name} is not installed here: pip install .*; it is left out", said)
 
 
-def test_an_ideal_rim_is_never_default_and_refused_where_unsuitable(monkeypatch, case):
+def test_exudyn_is_no_default_and_is_refused_where_unsuitable(monkeypatch, case):
     if "exudyn" not in available_engines():
         pytest.skip("exudyn is not installed")
     assert "exudyn" not in {run.engine for run in default_runs()}
     assert reserved_engines()["exudyn"] == "exudyn has no recess support and no uplift"
-    # named, it runs on flat ground; a support that is named stays, and is refused
+    # a named engine runs on flat ground; a named support is unchanged, and refused
     assert default_runs(engines=("exudyn",)) == (Run("exudyn", "flat"),)
     (recess,) = default_runs(engines=("exudyn",), supports=("recess",))
     with pytest.raises(ValueError, match="support must be flat in exudyn, got 'recess'"):
@@ -99,7 +99,7 @@ def test_an_ideal_rim_is_never_default_and_refused_where_unsuitable(monkeypatch,
     require_runnable(released, Run("exudyn", "flat"))
     find = importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "exudyn" else find(name))
-    # an extra that is not installed is nobody's loss, until it is named
+    # an extra that is not installed is an error only where it is named
     assert "exudyn" not in missing_engines()
     with pytest.raises(ValueError, match=r"'exudyn' is not installed here: pip install 'exudyn"):
         require_runnable(released, Run("exudyn", "flat"))
@@ -109,7 +109,7 @@ def labels(case: Case, run: Run, reference: Run | None = None) -> list[str]:
     return list(references_of(case, run, str(run), reference))
 
 
-def test_each_support_is_held_against_what_it_asks_for(case):
+def test_each_run_is_compared_with_the_references_of_its_support(case):
     recess, flat = Run(None, "recess"), Run(None, "flat")
     assert labels(case, Run("mujoco", "recess")) == ["recess model"]
     assert labels(case, Run("mujoco", "flat")) == ["recess model", "flat-ground model"]
@@ -119,12 +119,12 @@ def test_each_support_is_held_against_what_it_asks_for(case):
     found = references_of(case, Run("mujoco", "ring", 2e-4), "mujoco ring")
     assert list(found) == ["recess model", "mujoco ring, half the step"]
     assert found["mujoco ring, half the step"] == Run("mujoco", "ring", 1e-4)
-    for sought in ("auto", "extrapolated"):  # of the default, as the step is not known beforehand
+    for sought in ("auto", "extrapolated"):  # of the default, as the step is unknown beforehand
         assert labels(case, Run("mujoco", "ring", sought))[1].endswith(", half the default step")
 
 
 @pytest.mark.slow
-def test_a_ring_that_is_not_touched_follows_the_model_of_open_ground():
+def test_an_untouched_ring_follows_the_flat_ground_model():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=2.0, name="release")
     ring = Run("mujoco", "ring")
@@ -148,7 +148,7 @@ def test_a_ring_runs_by_default_on_engines_that_support_it(case):
             require_runnable(case, *default_runs(["pybullet"], ["ring"]))
 
 
-def test_labels_tell_runs_apart_with_as_little_as_possible():
+def test_labels_are_as_short_as_distinct_labels_can_be():
     runs = [
         Run("mujoco", "recess"),
         Run("mujoco", "flat", 1e-4),

@@ -1,4 +1,4 @@
-"""Tasks wherever they run: results in their order, a death told as such, and nothing left behind."""
+"""Tasks in processes and on clusters: order of results, reports of death, and cleaning up."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_results_come_in_the_order_of_the_tasks(workers):
 
 
 @pytest.mark.slow
-def test_processes_are_kept_and_run_all_but_brief_tasks():
+def test_processes_are_reused_and_brief_tasks_run_here():
     pids = run_tasks(process_of, [0] * 8, workers=2)
     assert len(set(pids)) <= 2
     assert os.getpid() not in pids
@@ -69,7 +69,7 @@ def test_processes_are_kept_and_run_all_but_brief_tasks():
     assert run_tasks(process_of, [0], workers=2) != [os.getpid()] == run_tasks(process_of, [0])
 
 
-def test_bad_input_is_raised_here_with_where_it_came_from():
+def test_bad_input_is_raised_here_with_its_remote_traceback():
     with pytest.raises(ValueError, match="at least 1") as caught:
         run_tasks(refuse, [1], workers=2)
     assert "refuse" in "".join(caught.value.__notes__)
@@ -80,7 +80,7 @@ def test_a_process_that_dies_loses_only_its_own_task(tmp_path):
     found = run_tasks(signalled, [0, int(signal.SIGABRT), 0], workers=2)
     assert (found[0], found[2]) == (None, None)
     assert found[1] == FailedTask(f"the process ended with status -{signal.SIGABRT.value}")
-    # one that was ended from outside begins again
+    # a task whose process was killed from outside starts again
     again, once = (str(tmp_path / name) for name in ("a", "b"))
     assert run_tasks(die_once, [again], workers=2, tries=2) == [again]
     assert [type(each) for each in run_tasks(die_once, [once], workers=2)] == [FailedTask]
@@ -96,10 +96,10 @@ def test_ctrl_c_ends_the_processes_at_once_and_leaves_nothing(monkeypatch, tmp_p
     with pytest.raises(KeyboardInterrupt):
         run_tasks(time.sleep, [60.0, 60.0, 60.0], workers=2, progress=interrupt)
     assert time.monotonic() - begun < 20.0
-    assert list(tmp_path.iterdir()) == []  # the folders of the processes went with them
+    assert list(tmp_path.iterdir()) == []  # the folders of the processes are removed with them
 
 
-def test_tasks_finished_before_an_interruption_are_kept(tmp_path):
+def test_tasks_finished_before_an_interruption_are_stored(tmp_path):
     def interrupt(event):
         if event.done == 2:
             raise KeyboardInterrupt
@@ -133,14 +133,14 @@ def test_a_damaged_file_is_named_and_its_task_runs_again(tmp_path):
         assert path.read_bytes() == whole
 
 
-def test_a_lost_task_is_not_kept(tmp_path):
+def test_a_lost_task_is_not_cached(tmp_path):
     with table_cache(tmp_path) as cache:
         found = run_tasks(killed, [1], workers=2, cache=cache)
         assert [type(each) for each in found] == [FailedTask]
         assert cache.find(1) is None
 
 
-def test_one_run_at_a_time_writes_to_a_folder_and_leftovers_go(tmp_path):
+def test_only_one_run_writes_to_a_folder_and_leftovers_are_removed(tmp_path):
     place = tmp_path / CACHE / "study"
     place.mkdir(parents=True)
     (place / ".abc.parquet.1.part").write_bytes(b"PAR1")
@@ -154,7 +154,7 @@ def test_one_run_at_a_time_writes_to_a_folder_and_leftovers_go(tmp_path):
 
 
 @pytest.mark.slow
-def test_no_scheduler_or_no_workers_are_one_clear_line(monkeypatch):
+def test_a_missing_scheduler_or_worker_is_one_clear_line(monkeypatch):
     monkeypatch.setattr(scheduler, "_PATIENCE", 0.5)
     with pytest.raises(ValueError, match="no Dask scheduler answers at 'tcp://127"):
         run_tasks(abs, [1], scheduler="tcp://127.0.0.1:1")
@@ -168,7 +168,7 @@ def test_no_scheduler_or_no_workers_are_one_clear_line(monkeypatch):
         run_tasks(abs, [1], scheduler=cluster.scheduler_address)
 
 
-def test_dask_gives_the_same_and_refuses_other_code():
+def test_dask_gives_the_same_results_and_refuses_other_code():
     distributed = pytest.importorskip("distributed")
     alone = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
     with distributed.LocalCluster(**alone) as cluster:
@@ -180,7 +180,7 @@ def test_dask_gives_the_same_and_refuses_other_code():
 
 @pytest.mark.slow
 def test_a_script_without_a_main_guard_runs_once(tmp_path):
-    # its own functions are those of __main__, which is another module there
+    # its own functions are those of __main__, which is another module in the worker
     script = tmp_path / "plain.py"
     script.write_text(
         textwrap.dedent(
@@ -200,7 +200,7 @@ def test_a_script_without_a_main_guard_runs_once(tmp_path):
 
 
 @pytest.mark.slow
-def test_workers_end_with_a_caller_that_iskilled(tmp_path):
+def test_workers_end_with_a_killed_caller(tmp_path):
     script = (
         "import os, time\n"
         "from rockwobble.compare.runs.scheduler import Worker\n"
@@ -222,21 +222,21 @@ def test_workers_end_with_a_caller_that_iskilled(tmp_path):
 
 def _runs(pid: int) -> bool:
     try:
-        # a zombie has ended; that nobody has waited for it yet does not count
+        # a zombie has ended, even if no process has waited for it yet
         return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
     except OSError:
         return False
 
 
 @pytest.mark.slow
-def test_answers_that_cannot_travel_and_output_do_no_harm():
+def test_unpicklable_answers_and_printed_output_are_handled():
     with pytest.raises((TypeError, AttributeError, RuntimeError), match="pickle"):
         run_tasks(memoryview, [b"", b""], workers=2)
     assert run_tasks(os.system, ["echo noise", "echo more"], workers=2) == [0, 0]
     assert run_tasks(print, ["noise", "more"], workers=2) == [None, None]
 
 
-def test_workers_follow_the_processors_of_this_process(monkeypatch, tmp_path):
+def test_the_number_of_workers_is_that_of_usable_cpus(monkeypatch, tmp_path):
     quota = tmp_path / "cpu.max"
     monkeypatch.setattr(cpus, "_QUOTA", quota)
     whole = usable_cpus()
@@ -250,7 +250,7 @@ def test_workers_follow_the_processors_of_this_process(monkeypatch, tmp_path):
 @pytest.mark.parametrize(
     ("error", "words"), [(OSError("worker died\nat length"), "worker died"), (OSError(), "OSError")]
 )
-def test_a_lost_task_is_told_in_one_line(monkeypatch, error, words):
+def test_a_lost_task_is_reported_in_one_line(monkeypatch, error, words):
     def lose(*_):
         lost = Future()
         lost.set_exception(error)

@@ -37,12 +37,12 @@ def test_a_study_names_the_options_of_its_plan(study: Callable[..., Any], plan: 
 
 
 PARTS = (rw, rw.models, rw.reduced, rw.multibody, rw.compare)
-# whose options are settings that an engine or a model names, refused there by name
+# settings of an engine or a model as options, refused there by name
 PASS_SETTINGS = {"Run", "check", "simulate"}
 
 
 def public_functions() -> dict[str, Callable[..., object]]:
-    """Return every public function, and every method of a public class, by name."""
+    """Every public function, and every method of a public class, by name."""
     found: dict[str, Callable[..., object]] = {}
     for part in PARTS:
         for name in part.__all__:

@@ -47,7 +47,7 @@ def write(folder, kind="study", tables=("points",), **options):
 
 
 def test_files_are_written_all_or_none(tmp_path):
-    replace_files(tmp_path / "a" / "b", {"c.csv": b"1"})  # folders are made
+    replace_files(tmp_path / "a" / "b", {"c.csv": b"1"})  # folders are created
     assert (tmp_path / "a" / "b" / "c.csv").read_bytes() == b"1"
     (tmp_path / "b.csv").mkdir()
     with pytest.raises(ValueError, match=r"must not be a folder, got .*b\.csv"):
@@ -55,7 +55,7 @@ def test_files_are_written_all_or_none(tmp_path):
     assert names(tmp_path) == {"a", "a/b", "a/b/c.csv", "b.csv"}
 
 
-def test_a_failure_while_writing_leaves_the_old_files_whole(tmp_path, monkeypatch):
+def test_a_failure_while_writing_preserves_the_old_files(tmp_path, monkeypatch):
     replace_files(tmp_path, {"a.csv": b"old", "b.csv": b"old"})
     write_bytes = Path.write_bytes
 
@@ -71,14 +71,14 @@ def test_a_failure_while_writing_leaves_the_old_files_whole(tmp_path, monkeypatc
     assert contents(tmp_path) == {"a.csv": b"old", "b.csv": b"old"}
 
 
-def test_files_and_their_names_outlive_a_loss_of_power(tmp_path, monkeypatch):
+def test_files_and_their_names_survive_a_loss_of_power(tmp_path, monkeypatch):
     forced = []
     monkeypatch.setattr(os, "fsync", lambda descriptor: forced.append(os.fstat(descriptor).st_ino))
     replace_files(tmp_path, {"a.csv": b"1"})
     assert forced == [(tmp_path / "a.csv").stat().st_ino, tmp_path.stat().st_ino]
 
 
-def test_pipes_and_links_stay_what_they_are(tmp_path):
+def test_pipes_and_links_are_not_replaced(tmp_path):
     pipe, link = tmp_path / "pipe", tmp_path / "link.csv"
     os.mkfifo(pipe)
     (tmp_path / "real.csv").write_bytes(b"old")
@@ -93,7 +93,7 @@ def test_pipes_and_links_stay_what_they_are(tmp_path):
     assert names(tmp_path) == {"link.csv", "pipe", "real.csv"}
 
 
-def test_looking_whether_a_folder_can_be_written_leaves_no_trace(tmp_path):
+def test_testing_whether_a_folder_is_writable_leaves_no_trace(tmp_path):
     assert require_writable(tmp_path / "x" / "y") == tmp_path / "x" / "y"
     assert names(tmp_path) == set()
     (tmp_path / "taken").write_text("")
@@ -135,7 +135,7 @@ def test_a_damaged_file_is_named_and_not_read(tmp_path, state):
         read_results(tmp_path, "study")
 
 
-def test_a_second_run_replaces_its_own_files_and_touches_nothing_else(tmp_path):
+def test_a_second_run_replaces_only_its_own_files(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
     write(tmp_path, tables=("points", "budget"), pages={"old.svg": b""})
     write(tmp_path, kind="other", tables=("rows",))
@@ -143,11 +143,11 @@ def test_a_second_run_replaces_its_own_files_and_touches_nothing_else(tmp_path):
     assert names(tmp_path) == {"mine.txt", "points.parquet", "rows.parquet", MANIFEST}
     assert [made.kind for made in read_manifests(tmp_path)] == ["study", "other"]
     assert read_results(tmp_path, "other").table("rows")["run"].tolist() == ["a", "b"]
-    write(tmp_path, kind="second")  # takes a file of the study, which is whole no more
+    write(tmp_path, kind="second")  # overwrites a file of the study, which is damaged by that
     assert [made.kind for made in read_manifests(tmp_path)] == ["second", "other"]
 
 
-def test_pages_drawn_again_leave_the_results_as_they_are(tmp_path):
+def test_new_pages_leave_the_results_unchanged(tmp_path):
     write(tmp_path, pages={"study.md": b"# Study"})
     before = (tmp_path / "points.parquet").read_bytes()
     write_pages(tmp_path, "study", {"study.md": b"# Again", "study.html": b""})
@@ -157,7 +157,7 @@ def test_pages_drawn_again_leave_the_results_as_they_are(tmp_path):
     assert names(tmp_path / "elsewhere") == {"study.md"}
 
 
-def test_what_is_no_manifest_of_this_kind_is_refused(tmp_path):
+def test_a_foreign_manifest_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"has no manifest\.json"):
         read_results(tmp_path, "study")
     for content in ("{", "[]", '{"kind": "study"}'):
@@ -178,7 +178,7 @@ def test_an_installed_package_reports_no_commit_of_the_surrounding_repository(mo
 
 
 def write_claimed(folder: Path, kind: str, name: str) -> None:
-    """Write results of a table, of the plan that this process has claimed the folder for."""
+    """Write results of a table under the plan for which this process has claimed the folder."""
     claim = claim_on(folder)
     made = Manifest(kind=kind, command=claim.command if claim else "", plan=claim.plan if claim else "")
     write_results(folder, made, {name: TABLE})
@@ -208,7 +208,7 @@ def test_the_same_plan_resumes_and_another_is_refused(tmp_path):
     assert contents(tmp_path) == before
 
 
-def test_finished_tasks_belong_to_the_plan_that_was_ended(tmp_path):
+def test_finished_tasks_belong_to_the_interrupted_plan(tmp_path):
     with suppress(KeyboardInterrupt), claim_folder(tmp_path, plan="a", command="sweep --a"):
         path = finish(tmp_path, "sweep", "x")
         raise KeyboardInterrupt
@@ -232,7 +232,7 @@ def test_an_overwritten_plan_is_removed_once_the_new_one_is_complete(tmp_path):
     assert names(tmp_path) == {"two.parquet", MANIFEST, "notes.txt", CACHE}
 
 
-def test_nothing_finished_leaves_nothing(tmp_path):
+def test_a_plan_without_finished_tasks_leaves_nothing(tmp_path):
     place = tmp_path / "x" / "y"
     with suppress(KeyboardInterrupt), claim_folder(place, plan="a", command="sweep"):
         assert claim_on(place)
@@ -245,12 +245,12 @@ def test_results_of_other_programs_or_versions_are_not_reused(tmp_path):
     write_claimed(tmp_path, "sweep", "one")
     require_refused(tmp_path, "another program", plan="a", command="sweep")
     write_results(tmp_path, Manifest(kind="sweep", command="sweep --a"), {})
-    with claim_folder(tmp_path, plan="a", command="sweep --a"):  # word for word the same
+    with claim_folder(tmp_path, plan="a", command="sweep --a"):  # same text of the command
         pass
     require_refused(tmp_path, "`sweep --a`", plan="a", command="sweep")
 
 
-def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path):
+def test_a_second_process_is_refused_and_a_killed_one_unlocks(tmp_path):
     script = (
         "import sys, time\nfrom rockwobble.compare.storage.claim import claim_folder\n"
         "with claim_folder(sys.argv[1], plan='a', command='sweep'):\n"
