@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.contrast import pairs_in
-from rockwobble.compare.metrics.pair import outcome_of
+from rockwobble.compare.metrics.pair import beyond_yield, outcome_of
 from rockwobble.compare.metrics.statistics import adjusted, quantile_interval, value_if_enough
 from rockwobble.compare.runs.choice import default_runs, require_runnable, run_labels
 from rockwobble.compare.runs.execution import (
@@ -53,7 +53,8 @@ class Ensemble(Results, kind=KIND):
     ----------
     members : DataFrame
         One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
-        overturned), outcome (see `outcome_of`), diagnostics (their codes), wall_time [s].
+        overturned), outcome (see `outcome_of`; undecided where the tendon yields), diagnostics (their
+        codes), wall_time [s].
     methods : DataFrame
         One row for each method: own_model (of the support of an engine; of a ring, which has none, the recess
         model), runs, uplifted, overturned, failed, failed_members (their names), and of the peak tilts of
@@ -266,9 +267,10 @@ def _range(members: Sequence[Case], name: str) -> dict[str, float]:
 
 
 def _row(trace: Trace) -> pd.DataFrame:
+    yields = bool(beyond_yield(trace.peak_tilt, trace.case))  # what comes after is not modelled
     row = {
-        "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
-        "outcome": outcome_of(trace),
+        "peak_tilt": math.nan if yields else trace.peak_tilt / trace.case.cylinder.alpha,
+        "outcome": "undecided" if yields else outcome_of(trace),
         "diagnostics": cell_of(fact.code for fact in trace.facts),
         "wall_time": trace.wall_time,
     }

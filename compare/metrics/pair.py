@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import AGREEMENT, Case, GroundMotion, RockingBody, Trace
 from rockwobble.models.bounds import OVERTURNED_TILT
-from rockwobble.models.mode import SLIDES
+from rockwobble.models.mode import ROCKS_IN_PLANE, SLIDES
 from rockwobble.models.shown import CompactRepr
 
 FloatArray = NDArray[np.float64]
@@ -47,6 +47,8 @@ class Pair(CompactRepr):
         Of the base centre over the ground [m].
     slides_by : float
         Peak displacement of a reference that slides and does not rock [m]; 0 of others.
+    in_plane : bool
+        Whether the reference rocks in one plane: each pass goes through the upright position, on either side.
     """
 
     cylinder: RockingBody
@@ -61,6 +63,7 @@ class Pair(CompactRepr):
     displacement: FloatArray
     reference_displacement: FloatArray
     slides_by: float
+    in_plane: bool
 
     @property
     def tilt_difference(self) -> FloatArray:
@@ -127,7 +130,14 @@ def make_pair(cylinder: RockingBody, reference: Trace, trial: Trace, *, until: f
         fields[name] = _resample(trial.time, getattr(trial, name), time)
         fields[f"reference_{name}"] = getattr(reference, name)[:keep]
     slides_by = reference.peak_displacement if reference.mode == SLIDES else 0.0
-    return Pair(cylinder=cylinder, start=start_of(reference), time=time, slides_by=slides_by, **fields)
+    return Pair(
+        cylinder=cylinder,
+        start=start_of(reference),
+        time=time,
+        slides_by=slides_by,
+        in_plane=reference.mode == ROCKS_IN_PLANE,
+        **fields,
+    )
 
 
 def start_of(trace: Trace) -> float:
@@ -272,8 +282,14 @@ def turn_difference(pair: Pair, *, until: float, direction_difference: float = 0
 
 
 def _turn_difference(pair: Pair, direction_difference: float) -> FloatArray:
-    """Trial minus reference (n,) [rad], without the whole turns between their starts."""
+    """Trial minus reference (n,) [rad], without the whole turns between their starts.
+
+    In one plane the side of each pass is chance, so that no whole turn counts.
+    """
     difference = pair.rolling_angle - pair.reference_rolling_angle
+    if pair.in_plane:
+        known = direction_difference if math.isfinite(direction_difference) else 0.0
+        return np.asarray(difference - 2.0 * math.pi * np.round((difference - known) / (2.0 * math.pi)))
     both = np.flatnonzero(np.isfinite(difference))
     if not len(both):
         return difference

@@ -23,6 +23,7 @@ from rockwobble.studies.plans import (
     YIELD,
     TendonPlan,
     YieldPlan,
+    tendon_of,
 )
 
 from ..pages.command_line import command_line
@@ -341,11 +342,7 @@ class Restraint(Steel):
         excludes(self, _STEEL, *_RATIOS)
         if not first_given(self, *_RATIOS):
             return self.of_steel([cylinder], gravity)
-        return rw.Tendon(
-            prestress=self.tendon_prestress or 0.0,
-            stiffness=self.tendon_stiffness or 0.0,
-            yield_force=self.tendon_yield,
-        )
+        return tendon_of(self.tendon_prestress or 0.0, self.tendon_stiffness or 0.0, self.tendon_yield)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -79,7 +79,7 @@ def interval_form(form: str, *numbers: object) -> str:
     """
     value, low, high = (each if isinstance(each, float) else math.nan for each in numbers)
     half = min(0.5 * (high - low) if math.isfinite(high) else value - low, abs(value))
-    if not re.fullmatch(r"\.\d[fg]", form) or not 0.0 < half < math.inf:
+    if not re.fullmatch(r"\.\d[fg]", form) or not 0.0 < half < math.inf or not math.isfinite(value):
         return form
     places, shown = 1 - math.floor(math.log10(half)), int(form[1:-1])
     if form.endswith("f"):

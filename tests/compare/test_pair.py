@@ -21,6 +21,7 @@ from rockwobble.compare.metrics.pair import (
     turn_difference,
 )
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models.mode import ROCKS_IN_PLANE
 
 ROUNDING = 1e-12  # sums of some thousand terms of order one
 GRID = 1e-3  # a mean over samples against the integral: one sample more than a whole period
@@ -113,6 +114,16 @@ def test_azimuths_whole_turns_apart_are_equal(cylinder, make_trace, turns):
     # the direction of uplift may be less certain than the azimuth of the first tilted sample
     for known in (direction, 0.5):
         assert turn_difference(pair, until=10.0, direction_difference=known) == pytest.approx(0.2, abs=1e-11)
+
+
+def test_the_side_of_a_pass_in_one_plane_is_no_turn(cylinder, make_trace):
+    tilt = np.full_like(TIME, 0.3 * cylinder.alpha)
+    one, other = (
+        make_trace(TIME, tilt, rolling_angle=np.where(TIME > 5.0, turn, 0.0), uplift_direction=0.0)
+        for turn in (math.pi, -math.pi)
+    )
+    assert one.mode == ROCKS_IN_PLANE
+    assert turn_difference(make_pair(cylinder, one, other), until=10.0) == pytest.approx(0.0, abs=ROUNDING)
 
 
 def test_direction_difference_is_trial_minus_reference_across_pi(cylinder, make_trace):

@@ -71,6 +71,7 @@ BAD = {
         "--diameter 2 --height 9 --tan-alpha 0.2": "--diameter stands in place of --tan-alpha, got both",
         "--tendon-force 1e5": "--tendon-force needs --tendon-rigidity as well",
         f"{STEEL} --tendon-yield 2": "--tendon-force stands in place of --tendon-yield, got both",
+        "--tendon-yield 1": "tendon_yield needs a prestress or a stiffness of the tendon, got none",
         "--tendon-prestress 2 --tendon-yield 1": "yield_force must be above the prestress, 2 weights, got 1",
         "--support flat --tendon-prestress 1": "",
     }

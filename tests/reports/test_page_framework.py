@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 import math
 import re
 import shlex
@@ -17,7 +18,7 @@ from rich.console import Console
 from rockwobble.reports.figures.picture import TIME, Axis, Line, Panel, Picture
 from rockwobble.reports.pages import page as framework
 from rockwobble.reports.pages.page import Page, to_html
-from rockwobble.reports.pages.table import Column, Table, number
+from rockwobble.reports.pages.table import Column, Table, interval_form, number
 
 TEMPLATE = """
 # Report of {{ name }}
@@ -46,6 +47,12 @@ ROWS = [
     {"case": "a|b", "name": "pybullet", "peak": math.nan, "verdict": "not fine", "note": "n" * 90},
     {"case": "c", "name": "dart", "peak": math.inf, "verdict": "fine", "note": "n" * 90},
 ]
+
+
+def test_an_interval_has_a_form_whatever_is_known():
+    numbers = (math.nan, math.inf, -math.inf, 0.0, -2.5, 0.04, 130.0, None)
+    for form, values in itertools.product((".3f", ".3g"), itertools.product(numbers, repeat=3)):
+        assert re.fullmatch(r"\.\d+[fg]", interval_form(form, *values))
 
 
 @pytest.fixture

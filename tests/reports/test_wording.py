@@ -103,6 +103,10 @@ def test_each_wording_line_formats_every_value_type(number: Value, text: Value):
             finding = Finding(key=key, values=values_of(line, number, text))
             said = sentence(finding, short=bool(short))
             assert not re.search(r"[{}[\]]|\bnan\b|\binf\b|None", said), (key, said)
+            for name in finding.values:  # what is unknown leaves no gap
+                values = {each: value for each, value in finding.values.items() if each != name}
+                said = sentence(Finding(key=key, values=values), short=bool(short))
+                assert "  " not in said, (key, name, said)
 
 
 @pytest.mark.parametrize("code", CODES)

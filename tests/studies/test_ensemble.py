@@ -17,6 +17,7 @@ from rockwobble.models import (
     InitialState,
     Run,
     Suite,
+    Tendon,
     Trace,
     far_field_motions,
 )
@@ -44,6 +45,16 @@ def test_leaning_on_a_wall_beyond_balance_counts_as_overturned():
     assert (study.members["peak_tilt"] < 0.5 * math.pi / cylinder.alpha).all()
     swept = sweep(Suite(cases, [run]), workers=1).table
     assert swept["outcome"].tolist() == study.members["outcome"].tolist()
+
+
+def test_members_whose_tendon_yields_have_no_answer():
+    tied = [Tendon(prestress=0.5, stiffness=2.0, yield_force=force) for force in (0.51, 9.0)]
+    cases = [dataclasses.replace(CASE, tendon=tendon, name=f"{tendon.yield_force}") for tendon in tied]
+    made = ensemble(cases, models=[RECESS], runs=[], workers=1)
+    assert made.members["outcome"].tolist() == ["undecided", "stands"]
+    assert made.members["peak_tilt"].isna().tolist() == [True, False]
+    assert made.methods["failed_members"].tolist() == ["0.51"]
+    assert "ensemble.failed" in {finding.key for finding in made.findings()}
 
 
 def test_ring_run_is_compared_with_the_recess_model(monkeypatch):
