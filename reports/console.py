@@ -1,4 +1,4 @@
-"""The terminal: a command as it was typed, its progress, and how it ends."""
+"""The terminal: the command line, progress, messages and exit codes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
 def command_line() -> str:
-    """Return the command that runs, as it would be typed."""
+    """The running command, as typed."""
     return shlex.join(["rockwobble", *sys.argv[1:]])
 
 
@@ -73,7 +73,7 @@ def user_input() -> Iterator[None]:
 
 @contextmanager
 def interruptible(kept: Path | None = None) -> Iterator[None]:
-    """Turn Ctrl-C into one line and exit code 130, and tasks that cannot be finished into one and code 1.
+    """Turn Ctrl-C into one line and exit code 130, and incomplete tasks into one line and code 1.
 
     `kept` is the folder of runs that need no repetition.
     """
@@ -91,7 +91,7 @@ def interruptible(kept: Path | None = None) -> Iterator[None]:
 
 
 def replace_unencodable_output() -> None:
-    """Let no poor encoding of the output stop a command."""
+    """Replace characters that the encoding of the output lacks."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="namereplace", line_buffering=True)
@@ -102,7 +102,7 @@ _PAUSE = 10.0  # between two lines where there is no terminal [s]
 
 @contextmanager
 def shown_progress(what: str = "runs") -> Iterator[ProgressCallback]:
-    """Yield a callback that shows how far tasks are, and which runs; `what` they are in words.
+    """Yield a callback that shows the progress of tasks; `what`: the tasks in words.
 
     In a terminal by a bar, elsewhere by a line from time to time. A damaged file of finished tasks is named.
     """
@@ -163,7 +163,7 @@ def _lines() -> Iterator[Callable[[Progress, str], None]]:
 
 
 def open_page(page: Path, wanted: bool | None) -> None:
-    """Open a page in the browser where that is wanted; None: in a terminal."""
+    """Open a page in the browser; with None only in a terminal."""
     if sys.stdout.isatty() if wanted is None else wanted:
         import webbrowser
 
@@ -171,7 +171,7 @@ def open_page(page: Path, wanted: bool | None) -> None:
 
 
 def save_with_page(results: Results, out: Path) -> Callable[..., None]:
-    """Write results with their page, without the document of `report`, and return what prints the page."""
+    """Write results with their HTML page but no Markdown document, and return the printer of the page."""
     from .pages import page_of
 
     results = results.made_by(command_line())

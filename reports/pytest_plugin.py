@@ -82,7 +82,7 @@ def pytest_collection_modifyitems(
 
 
 class CertificateItem(pytest.Item):
-    """The question whether this installation still does what a certificate says."""
+    """Check that this installation reproduces a certificate."""
 
     def __init__(self, *, certificate: Path, **common: Any) -> None:
         super().__init__(**common)
@@ -105,7 +105,7 @@ class CertificateItem(pytest.Item):
     def repr_failure(
         self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
     ) -> str | TerminalRepr:
-        """Words on a change; anything else as pytest has it."""
+        """Report of a change; other errors as pytest formats them."""
         if isinstance(excinfo.value, ChangedError | ValueError):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
@@ -116,7 +116,7 @@ class CertificateItem(pytest.Item):
 
 
 class ChangedError(Exception):
-    """An installation that does not do what its certificate says."""
+    """Error: the installation contradicts its certificate."""
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> SuiteFile | None:
@@ -159,7 +159,7 @@ class SuiteItem(pytest.Item):
         self.suite, self.case, self.run, self.label = suite, case, run, label
 
     def runtest(self) -> None:
-        """Run engine and model, and raise what is beyond a bound."""
+        """Run engine and model, and raise on exceeded bounds."""
         from rockwobble.compare.check.suite import SuiteRuns, check_run, reference_of
         from rockwobble.compare.runs.execution import Job
 
@@ -180,7 +180,7 @@ class SuiteItem(pytest.Item):
     def repr_failure(
         self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
     ) -> str | TerminalRepr:
-        """Return the bounds that do not hold, and the budget; anything else as pytest has it."""
+        """Report of the exceeded bounds with the budget; other errors as pytest formats them."""
         if isinstance(excinfo.value, DisagreementError):
             return str(excinfo.value)
         if isinstance(excinfo.value, ValueError):
@@ -194,7 +194,7 @@ class SuiteItem(pytest.Item):
 
 
 class DisagreementError(Exception):
-    """An engine run that is further from the reduced model than its bounds allow.
+    """Error: an engine run differs from the reduced model by more than its bounds.
 
     Parameters
     ----------

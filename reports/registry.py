@@ -1,4 +1,4 @@
-"""The one list of what `rockwobble` offers: its commands, and the results that they write.
+"""Registry of commands and of the results that they write.
 
 An entry is found by its name: its page is `page_of` of `pages/NAME.py`, its figures are `pictures` of
 `figures/NAME.py`, its command is the function NAME in the module of its group in `cli`, and its results state
@@ -60,12 +60,12 @@ class Entry:
             object.__setattr__(self, field, getattr(self, field) or default)
 
     def results_class(self) -> type[Results]:
-        """Return the class of the results."""
+        """Class of the results."""
         cls: type[Results] = self.study_class().yields if self.study else _named(self.results)
         return cls
 
     def study_class(self) -> type[Study[Any, Any]]:
-        """Return the class of the study."""
+        """Class of the study."""
         cls: type[Study[Any, Any]] = _named(self.study)
         return cls
 

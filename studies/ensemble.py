@@ -1,4 +1,4 @@
-"""Study of an ensemble: distributions of peak tilts, which agree where single traces have diverged."""
+"""Study of an ensemble: distributions of peak tilts, which can agree after single traces have diverged."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Ensemble(Results, kind=KIND):
     """
 
     def headline(self) -> dict[str, Number]:
-        """Return the median ratio of each two methods."""
+        """Median ratio of each pair of methods."""
         return {
             f"{row['method']} / {row['against']}, median ratio": value_if_enough(
                 row["ratio"], row["compared"], ratio=True
@@ -95,7 +95,7 @@ class Ensemble(Results, kind=KIND):
         return Findings(ensemble_findings(self.members["member"].nunique(), self.methods, self.contrasts))
 
     def sheets(self) -> dict[str, bytes]:
-        """Return the tables as CSV."""
+        """Tables as CSV."""
         return {f"{name}.csv": table.to_csv(index=False).encode() for name, table in self.tables.items()}
 
     def _main_facts(self) -> dict[str, str]:
@@ -201,7 +201,7 @@ def ensemble(
 
 @dataclass(frozen=True)
 class EnsembleStudy(Study[Job, Ensemble]):
-    """Members by methods, a job each, and what `Ensemble.facts` says of them."""
+    """Members by methods, one task each, with the inputs as `Ensemble.facts`."""
 
     kind: ClassVar[str] = KIND
     what: ClassVar[str] = "runs"
@@ -210,40 +210,40 @@ class EnsembleStudy(Study[Job, Ensemble]):
     about: Mapping[str, object]
 
     def tasks(self) -> Sequence[Job]:
-        """Jobs."""
+        """One task for each member and method."""
         return self.jobs
 
     @staticmethod
     def row(task: Job) -> pd.DataFrame:
-        """Row of a run, without the names of its member and its method."""
+        """Row of a run, without member name and method."""
         return _row(run_job(task))
 
     def key(self, task: Job) -> str:
-        """Hash of what a run depends on."""
+        """Hash of the inputs of a run."""
         return job_fingerprint(task)
 
     def here(self) -> Callable[[Job], bool]:
-        """Whether a run takes less than to start a process."""
+        """Whether a run takes less time than starting a process."""
         return brief_among(self.jobs)
 
     def lost(self, task: Job, why: str) -> pd.DataFrame:
-        """Row of a run whose process died: it failed."""
+        """Row of a failed run, for a process that died."""
         return _row(lost_trace(task.case, task.run, why))
 
     def results(self, tables: list[pd.DataFrame]) -> Ensemble:
-        """Ensemble of the rows of all runs."""
+        """Ensemble from the rows of all runs."""
         names = [{"member": job.case.name, "method": job.label} for job in self.jobs]
         members = pd.concat([pd.DataFrame(names), pd.concat(tables, ignore_index=True)], axis=1)
         return ensemble_of(members, self.about)
 
 
 def _compared_with(run: Run) -> str:
-    """Return the label of the model of an engine's own support, or the recess model."""
+    """Label of the reduced model of an engine's support, else the recess model."""
     return "" if run.is_model else str(run.compared_with[-1])
 
 
 def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
-    """Return the ensemble of a table of members and of their `Ensemble.facts`."""
+    """Ensemble of a table of members and of their `Ensemble.facts`."""
     methods = cast("Mapping[str, str]", about["methods"])
     tables = {
         "members": members,
@@ -254,7 +254,7 @@ def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
 
 
 def _of_all(values: Iterable[float | Tendon | None]) -> object:
-    """Common value as plain fields; "differs" where there are several."""
+    """Common value as plain fields; "differs" if there are several."""
     value, *others = set(values)
     if others:
         return "differs"
@@ -278,7 +278,7 @@ def _row(trace: Trace) -> pd.DataFrame:
 
 
 def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
-    """Return one row for each method, see `Ensemble.methods`; `methods` names the own model of each."""
+    """One row per method, see `Ensemble.methods`; `methods` gives the reduced model of each support."""
     rows = []
     for method, own in methods.items():
         runs = members[members["method"] == method]
@@ -313,7 +313,7 @@ def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFr
 
 
 def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
-    """Return one row for each two methods, see `Ensemble.contrasts`."""
+    """One row per pair of methods, see `Ensemble.contrasts`."""
     rows = []
     for against, method in itertools.combinations(methods, 2):
         both = pairs_in(members, method, against)

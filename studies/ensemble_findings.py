@@ -35,7 +35,7 @@ def rows_of(table: pd.DataFrame) -> list[Row]:
 
 
 def main_pairs(methods: pd.DataFrame, contrasts: pd.DataFrame) -> list[Row]:
-    """Rows of the contrasts that are asked for first: engines by their own model, then models."""
+    """Main rows of the contrasts: engines compared with their reduced model, then models."""
     rows = rows_of(contrasts)
     own = dict(zip(methods["method"], methods["own_model"], strict=True))
     engines = [row for row in rows if own[row["method"]] and own[row["method"]] == row["against"]]
@@ -68,7 +68,7 @@ def ensemble_findings(members: int, methods: pd.DataFrame, contrasts: pd.DataFra
 
 
 def _pair(row: Row) -> Finding:
-    """Finding on how the members of one pair of methods differ."""
+    """Finding on the difference of one pair of methods."""
     values: dict[str, Value] = {"name": row["method"], "name_reference": row["against"], "share": MARGIN}
     values |= {"runs": row["compared"], "count_higher": row["higher"], "count_lower": row["lower"]}
     ratio = value_if_enough(row["ratio"], row["compared"], ratio=True)

@@ -1,4 +1,4 @@
-"""A grid of reduced runs from rest: sizes, slenderness, intensities, motions and models."""
+"""Grid of reduced runs from rest: sizes, slenderness, intensities, motions and models."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ class Grid(CompactRepr, GridPlan):
             reduced.peak_tilts([1.0], 0.2, self.motions[0], [], **run)
 
     def doubts(self) -> list[dict[str, object]]:
-        """Doubts about its motions, sizes and gravity, as of `doubts_of_cases`."""
+        """Doubts about motions, sizes and gravity, see `doubts_of_cases`."""
         return doubts_about(
             motions=self.motions,
             cylinders=self.corners(),
@@ -169,7 +169,7 @@ class Grid(CompactRepr, GridPlan):
         )
 
     def corners(self) -> list[Cylinder]:
-        """The smallest and the largest cylinders of the least and of the largest slenderness."""
+        """Smallest and largest cylinders at the least and the largest slenderness."""
         return [
             Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(self.semidiagonals), max(self.semidiagonals))
@@ -204,7 +204,7 @@ class Grid(CompactRepr, GridPlan):
             )
 
     def describe(self) -> dict[str, object]:
-        """Axes and options, for a file; SI units."""
+        """Axes and options in SI units, for a file."""
         return {
             "plan": "grid of reduced runs",
             "runs": self.rows,

@@ -1,4 +1,4 @@
-"""Options of the studies, apart from what they run: help is there before anything heavy is imported."""
+"""Options of the studies, kept apart from the runs so that help imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class ModelPlan(Plan):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Copies(Plan):
-    """Perturbed copies of a case: how many, and how different."""
+    """Perturbed copies of a case: number and relative perturbation."""
 
     copies: int = option(20, _COPIES, group="Members", least=2)
     perturbation: float = option(
@@ -55,7 +55,7 @@ class Copies(Plan):
     seed: int = option(0, _SEED, group="Members", least=0)
 
     def perturbed(self, case: Case, count: int | None = None) -> list[Case]:
-        """Return perturbed copies of a case, as many as the plan says or `count`."""
+        """Perturbed copies of a case, `count` of them or the number of the plan."""
         from rockwobble.models import perturbed_copies
 
         copies = self.copies if count is None else count
@@ -64,7 +64,7 @@ class Copies(Plan):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdvicePlan(Copies):
-    """Advice on one case: its copies, of which 5 % have to be a run or more, and its support."""
+    """Options of an advice on one case: number of copies (5 % must be at least one run) and support."""
 
     copies: int = option(100, _COPIES, group="Members", least=20, most=10_000)
     seed: int = option(1, _SEED, group="Members", least=0)
@@ -85,7 +85,7 @@ class AdvicePlan(Copies):
 
 
 def tendon_of(prestress: float, stiffness: float, yield_force: float | None = None) -> Tendon | None:
-    """Return the tendon of such values, as of `Tendon`; None where it does not pull."""
+    """Tendon from option values, see `Tendon`; None without force."""
     from rockwobble.models import Tendon  # imports numpy, which help can do without
 
     if not prestress and not stiffness:
@@ -97,20 +97,20 @@ def tendon_of(prestress: float, stiffness: float, yield_force: float | None = No
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TendonPlan(Plan):
-    """The tendon of many bodies, in multiples of weight and base radius of each."""
+    """Options of a tendon, relative to weight and base radius of each body."""
 
     tendon_prestress: float = option(0.0, PRESTRESS, group="Tendon", least=0.0)
     tendon_stiffness: float = option(0.0, STIFFNESS, group="Tendon", least=0.0)
 
     @property
     def tendon(self) -> Tendon | None:
-        """The tendon; None where it does not pull."""
+        """The tendon; None without force."""
         return tendon_of(self.tendon_prestress, self.tendon_stiffness)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class YieldPlan(TendonPlan):
-    """The same, and up to which force it is elastic."""
+    """Options of a tendon with a yield force."""
 
     tendon_yield: float | None = option(
         None, f"{YIELD}; runs that pass it are no answer. Default: none.", group="Tendon", above=0.0
@@ -128,7 +128,7 @@ class YieldPlan(TendonPlan):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FragilityPlan(YieldPlan):
-    """Fragility: intensities, limits, statistics, and what its methods have in common."""
+    """Options of a fragility: intensities, limits, statistics, and common terms of its methods."""
 
     measure: str = option(
         "peak_acceleration",
@@ -211,7 +211,7 @@ PROBES = 500
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpectrumPlan(YieldPlan):
-    """Overturning spectrum: its grid, what is run in a cell, and the search for the lowest intensities."""
+    """Options of an overturning spectrum: grid, run of a cell, and search for the lowest intensities."""
 
     SIZES: ClassVar = (0.5, 30.0, 100)  # [m]; with the intensities figure 6 of the paper
     INTENSITIES: ClassVar = (1.0, 12.0, 100)  # [g tan alpha]
@@ -260,7 +260,7 @@ class SpectrumPlan(YieldPlan):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ValidityPlan(TendonPlan):
-    """Extent of the study of the limits, and the slab and the tendon of its cylinders."""
+    """Options of the validity study: its extent, and slab and tendon of its cylinders."""
 
     quick: bool = option(
         False,
@@ -277,7 +277,7 @@ class ValidityPlan(TendonPlan):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GridPlan(TendonPlan):
-    """Grid of reduced runs from rest: its axes, and what all runs have in common."""
+    """Options of a grid of reduced runs from rest: its axes, and common terms of all runs."""
 
     # [m], [-], [-]: from, to and count
     DEFAULTS: ClassVar = {

@@ -1,4 +1,4 @@
-"""Single run: the trace of one reduced model or engine, and from when on perturbed copies diverge."""
+"""Single run: the trace of one method, and the time at which its perturbed copies diverge."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class SingleRun(Results, kind="run"):
     trace: Trace
 
     def findings(self) -> Findings:
-        """The mode of motion, what becomes of it, from when on it is one of many, and its other numbers."""
+        """Findings: mode, outcome, divergence time of copies, and other numbers."""
         trace = self.trace
         said: list[Finding] = []
         if trace.run.support in SUPPORTS:
@@ -84,7 +84,7 @@ class SingleRun(Results, kind="run"):
 
     @property
     def error(self) -> PeakError:
-        """Error of the peak tilt; of earlier versions nothing is known."""
+        """Error of the peak tilt; NaN in results of earlier versions."""
         return PeakError(*self.facts["single_trace"].get("error", NO_ERROR))
 
     def headline(self) -> Mapping[str, Number]:
@@ -105,7 +105,7 @@ class SingleRun(Results, kind="run"):
         }
 
     def sheets(self) -> Mapping[str, bytes]:
-        """Return the trace as `Trace.load` reads it, its samples and its passes as CSV."""
+        """Trace in the format of `Trace.load`, with its samples and passes as CSV."""
         trace = self.trace
         return {
             _FILE: to_parquet(self.tables["run"], trace.to_plain(), trace.case),
@@ -115,17 +115,17 @@ class SingleRun(Results, kind="run"):
 
     @classmethod
     def of_stored(cls, stored: Stored) -> Self:
-        """Return the results whose files are whole."""
+        """Results read from verified files."""
         trace = Trace.load(stored.folder / _FILE)
         return cls(tables=stored.tables(), facts=stored.manifest.about, manifest=stored.manifest, trace=trace)
 
     def plot(self, part: str | None = None) -> Figure:
-        """Return a matplotlib figure of the trace."""
+        """Matplotlib figure of the trace."""
         return self.trace.plot(part)
 
 
 def _outcome(trace: Trace, scatter: float) -> Finding:
-    """Finding of the outcome; `scatter` is that of the peaks of the copies over the peak of the run."""
+    """Finding of the outcome; `scatter`: half range of the copies' peaks over the peak of the run."""
     falls, peak, alpha = overturning_time(trace), trace.peak_tilt, trace.case.cylinder.alpha
     if math.isfinite(falls):
         balance = balance_of(trace.case)
@@ -147,7 +147,7 @@ def _outcome(trace: Trace, scatter: float) -> Finding:
 
 
 def _quantities(trace: Trace, error: PeakError) -> Iterator[Finding]:
-    """The numbers of a run, without those that do not belong to it."""
+    """Numbers of a run, as far as its method and mode define them."""
     case, settings, slides = trace.case, trace.run.settings, trace.mode == SLIDES
 
     def quantity(name: str, /, **values: Value) -> Finding:
@@ -192,7 +192,7 @@ def _quantities(trace: Trace, error: PeakError) -> Iterator[Finding]:
 
 
 def _demands(trace: Trace, quantity: Callable[..., Finding]) -> Iterator[Finding]:
-    """Finding of the demands of a run on friction and recess, until it falls."""
+    """Finding on the demands of a run on friction and recess, up to its overturning time."""
     falls = overturning_time(trace)
     held = trace.assumptions_until(falls)
     if held is None:
@@ -213,7 +213,7 @@ def _demands(trace: Trace, quantity: Callable[..., Finding]) -> Iterator[Finding
 def single_run(
     case: Case, run: Run, *, answer: str = "", progress: ProgressCallback | None = None
 ) -> SingleRun:
-    """Return a run, and from when on copies of its reduced model diverge, by the rule of an advice.
+    """Run a case, with the divergence time of copies of its reduced model, by the rule of an advice.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def single_run(
 
 
 def _copies(case: Case, trace: Trace, own: Trace, model: Run) -> dict[str, object]:
-    """What copies of a run add to it: arguments of `single_run_of`; `own` is that of the model."""
+    """Scatter and divergence of copies, as arguments of `single_run_of`; `own`: trace of the model."""
     case = with_time_to_fall(case, own)
     copies = [simulate_run(each, model, sample_step=BAND_STEP) for each in _PLAN.perturbed(case)]
     if own.mode == SLIDES:
@@ -257,7 +257,7 @@ def _copies(case: Case, trace: Trace, own: Trace, model: Run) -> dict[str, objec
 
 
 def single_run_of(trace: Trace, single: Mapping[str, object] | None = None) -> SingleRun:
-    """Results of a trace, with what is known of its copies.
+    """Results of a trace and of its copies.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Findings of the input as it was understood: a case, its conditions, and the records that it reads."""
+"""Findings on the input: case, conditions, and sources of records."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def case_findings(case: Case) -> Iterator[Finding]:
 
 
 def condition_findings(facts: Facts) -> Iterator[Finding]:
-    """Conditions of a study that are not the usual ones.
+    """Conditions of a study that differ from the defaults.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def record_findings(motions: Iterable[GroundMotion | None]) -> Iterator[Finding]
 
 
 def source_findings(sources: Sequence[str]) -> Iterator[Finding]:
-    """The first sources of records, and how many more there are."""
+    """First sources of records, and the number of others."""
     for source in sources[:_MOST_SHOWN]:
         yield _stated("record", detail=source)
     if len(sources) > _MOST_SHOWN:

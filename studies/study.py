@@ -1,4 +1,4 @@
-"""A study: tasks, the table of each, and the results of all tables; one `run` serves every study."""
+"""Base of the studies: tasks, a table for each, and results from all tables."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ R = TypeVar("R")  # results
 
 
 class Study(Generic[T, R]):
-    """Base of the studies: a subclass states `kind`, `tasks`, `row` and `results`, and what else differs.
+    """Base of the studies: a subclass defines `kind`, `tasks`, `row` and `results`.
 
     Attributes
     ----------
@@ -68,23 +68,23 @@ class Study(Generic[T, R]):
         )
 
     def key(self, task: T) -> str:
-        """Hash of all that the table of a task depends on, see `result_fingerprint`."""
+        """Hash of all inputs of the table of a task, see `result_fingerprint`."""
         return result_fingerprint(task, reduced_makers())
 
     def name(self, task: T) -> str:
-        """Name of a task, for people."""
+        """Description of a task, for the progress callback."""
         return str(getattr(task, "name", task))
 
     def lost(self, task: T, why: str) -> pd.DataFrame | None:
-        """Table of a task whose process died; None where nothing can be said without it."""
+        """Table of a task whose process died; None if the study cannot continue."""
         return None
 
     def here(self) -> Callable[[T], bool]:
-        """Whether a task takes less than to start a process."""
+        """Whether a task takes less time than starting a process."""
         return lambda task: False
 
     def makers(self) -> Mapping[str, str]:
-        """Versions and code of all that tasks run."""
+        """Versions and code of all methods of the tasks."""
         return reduced_makers()
 
     def run(

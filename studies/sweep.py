@@ -1,4 +1,4 @@
-"""Sweeps: any number of runs, of a grid or of a suite, in chunks that are kept as they are finished."""
+"""Sweeps: many runs, of a grid or a suite, in cached chunks."""
 
 from __future__ import annotations
 
@@ -60,12 +60,12 @@ class CaseChunk:
         return jobs_fingerprint(self.jobs)
 
     def run(self) -> pd.DataFrame:
-        """Return the table of the results, one row for each run."""
+        """Table of the results, one row for each run."""
         return pd.DataFrame([_row(job, run_job(job)) for job in self.jobs])
 
 
 def runnable_suite(plan: Suite | Iterable[Case]) -> Suite:
-    """Return the suite that is swept: cases alone, and a suite without runs, are run with the recess model.
+    """Suite to sweep; without runs, its cases are run with the recess model.
 
     Raises
     ------
@@ -150,7 +150,7 @@ class Sweep(Results, kind=KIND):
         return self.tables[KIND]
 
     def headline(self) -> dict[str, Number]:
-        """Return the number of runs, and of those that ended in each way."""
+        """Number of runs, and of runs by outcome."""
         outcome = self.table["outcome"]
         return {"runs": len(outcome), **{name: int((outcome == name).sum()) for name in self.outcomes}}
 
@@ -171,17 +171,17 @@ class Sweep(Results, kind=KIND):
 
     @property
     def keys(self) -> list[str]:
-        """Columns whose values tell the parts of the sweep apart, as `summary` and figures have them."""
+        """Columns that distinguish the parts of the sweep in `summary` and figures."""
         return ["motion", "model", "tan_alpha"] if "model" in self.table else ["run"]
 
     @property
     def outcomes(self) -> list[str]:
-        """The outcomes that there are."""
+        """All outcomes that occur."""
         entries = set(self.table["outcome"])
         return [name for name in _OUTCOMES if name in entries]
 
     def summary(self) -> pd.DataFrame:
-        """Return one row for each part: how many runs ended how, and their peak tilts.
+        """One row per part: runs by outcome, and their peak tilts.
 
         Columns: `keys`, runs, a count for each outcome that there is, no_uplift (how many of them stood still
         throughout), and in alpha median, in which an overturned run is infinite, NaN of fewer than six, and
@@ -217,7 +217,7 @@ def sweep(
     chunk_size: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> Sweep:
-    """Run every combination, and return the tidy table of what became of each.
+    """Run every combination, and return a tidy table of the outcomes.
 
     The runs are cut into chunks. With `out` each chunk is kept there as soon as it is finished, named by
     a hash of its inputs, the versions and the code; a second call, after whatever ended the first, repeats
@@ -299,7 +299,7 @@ class SweepStudy(Study[Chunk, Sweep]):
         return self.chunks
 
     def key(self, task: Chunk) -> str:
-        """Hash of what the table of a chunk depends on."""
+        """Hash of the inputs of a chunk."""
         return task.key()
 
     def makers(self) -> Mapping[str, str]:
@@ -321,7 +321,7 @@ class SweepStudy(Study[Chunk, Sweep]):
 
 
 def _samples(motions: Iterable[GroundMotion]) -> pd.DataFrame:
-    """Table of the motions of a grid; a component that one does not have is missing, not zero."""
+    """Table of the motions of a grid; a missing component is NaN, not zero."""
     columns = ["motion", "time", *(f"acceleration_{axis}" for axis in "xyz")]
     tables = []
     for motion in motions:

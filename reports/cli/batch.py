@@ -218,7 +218,7 @@ def ensemble(
 def _members(
     context: typer.Context, problem: Problem, copies: Copies, motions: ManyMotions, peak: float | None
 ) -> tuple[rw.Case | list[rw.Case], str]:
-    """Return the case whose copies are the members, or the members, and what they are."""
+    """The case whose copies are the members, or the member cases, with a description."""
     if not motions.option:
         refuse(context, {"peak"}, "scales many motions, give --synthetic, --p695 or --records as well")
         return problem.case(), written("motions.copies", {"share": copies.perturbation}, {"share": "share"})
@@ -243,7 +243,7 @@ def _runs(
     suite: rw.Suite | None,
     cases: list[rw.Case],
 ) -> list[rw.Run]:
-    """Return the runs of the options for some cases, chosen among those of a suite."""
+    """Runs from the options for some cases, selected from those of a suite."""
     if engines == [options.NO_ENGINE]:
         return []
     if suite is not None:

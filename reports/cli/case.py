@@ -42,7 +42,7 @@ _external = OptionsIn("Trajectory of a shake table or another code")
 
 @dataclass(frozen=True, kw_only=True)
 class Trajectories(Plan):
-    """The options that name external trajectories."""
+    """Options that name external trajectories."""
 
     trajectory: list[Path] | None = _external(
         None,
@@ -69,7 +69,7 @@ class Trajectories(Plan):
     )
 
     def read(self, cases: Sequence[rw.Case]) -> list[rw.External]:
-        """Return the trajectories, each of which has been read once for the only case.
+        """External trajectories; each is read once here, for the only case.
 
         Raises
         ------
@@ -238,7 +238,7 @@ def simulate(
 
 
 def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model: dict[str, Any]) -> rw.Run:
-    """Return the run with the options that belong to its method; others are refused, not ignored."""
+    """Run with the options of its method; options of other methods are refused."""
     from rockwobble.compare.runs.choice import with_settings
 
     model = {name: value for name, value in model.items() if value is not None}
@@ -309,7 +309,7 @@ def advise(
 
 
 def _run(case: rw.Case, engine: str | None, support: str, time_step: float | None) -> rw.Run | None:
-    """Return the run of the engine that verifies; None without one."""
+    """Run of the verifying engine; None without one."""
     from rockwobble.compare.runs.choice import require_runnable
 
     if engine == options.NO_ENGINE and time_step is not None:

@@ -1,4 +1,4 @@
-"""From a function to a command: its options, what refuses a slip of the hand, and what it runs and saves."""
+"""Typer command from a function: its options, checks of its input, and saving of its results."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _FORMS: Mapping[str, tuple[Callable[[str], object], str]] = {
 
 
 def takes_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command, in the place of each parameter whose type is a dataclass, its fields as options.
+    """Give a command the fields of each dataclass parameter as options.
 
     A field is annotated with an option of typer, or is an option of a plan, whose numbers are checked when
     the plan is made. Two dataclasses may share a field: it is one option, and both get its value.
@@ -58,7 +58,7 @@ def takes_options(command: Callable[..., None]) -> Callable[..., None]:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What a command runs once its input is checked.
+    """Work of a command after its input is checked.
 
     Attributes
     ----------
@@ -120,7 +120,7 @@ def saves_results(command: Callable[..., Work]) -> Callable[..., None]:
 
 
 def _make(kind: Any, given: Mapping[str, object]) -> object:
-    """Return the dataclass with the given options; a refusal names an option as it is typed."""
+    """Dataclass from the given options; errors name an option as it is typed."""
     try:
         return kind(**{each.name: given[each.name] for each in fields(kind)})
     except ValueError as error:
@@ -142,7 +142,7 @@ def _parameters(kind: type) -> Iterator[inspect.Parameter]:
 
 
 def _annotation(kind: Any, stated: Option) -> Any:
-    """Return the type of an option of a plan with what typer is to know of it."""
+    """Annotation of an option, with the metadata for typer."""
     names = (stated.flag,) if stated.flag else ()
     more: dict[str, Any] = {"help": stated.help, "rich_help_panel": stated.group}
     if stated.form:  # typer knows no type for that
@@ -154,10 +154,10 @@ def _annotation(kind: Any, stated: Option) -> Any:
 
 
 class ShownCommand(TyperCommand):
-    """A command whose refusals say what was given."""
+    """Command that states the given value in each error."""
 
     def parse_args(self, ctx: object, args: list[str]) -> list[str]:
-        """Return the arguments that are left when the options are taken.
+        """Arguments left after the options are parsed.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The command that writes a page to play with: `rockwobble explore`."""
+"""Command that writes the interactive page: `rockwobble explore`."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _RECORD = {field.name for field in fields(Record)} - {"scale"}
 
 @dataclass(frozen=True, kw_only=True)
 class Records(Plan):
-    """The option that names several ground motions."""
+    """Option that names several ground motions."""
 
     records: Path | None = _several(
         None, "Folder of up to 10 records, as for ensemble, instead of one record."
@@ -114,7 +114,7 @@ def explore(
 
 
 def _shakings(context: typer.Context, problem: Problem, records: Path | None) -> Sequence[Any]:
-    """Return the ground motions of the page: those of a folder, one record, or what ships.
+    """Ground motions of the page: those of a folder, one record, or the shipped ones.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def _shakings(context: typer.Context, problem: Problem, records: Path | None) ->
 
 
 def _call(name: str, *values: object, **named: object) -> str:
-    """Return a call in Python."""
+    """Python call as text."""
     return f"{name}({', '.join([*map(repr, values), *(f'{key}={value!r}' for key, value in named.items())])})"
 
 

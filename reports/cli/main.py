@@ -1,4 +1,4 @@
-"""The command line. Nothing heavy is imported before a command needs it: --help answers at once."""
+"""The command line; heavy imports happen only inside commands, so that --help is fast."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .command import ShownCommand
 
 @cache
 def _command(name: str) -> TyperCommand:
-    """Import a command and return it as typer builds it; its docstring ends with an example."""
+    """Import a command and build it with typer; its docstring ends with an example."""
     entry = COMMANDS[name]
     group = entry.group
     module = importlib.import_module(f".{'of_study' if entry.study else group}", __package__)
@@ -36,13 +36,13 @@ def _command(name: str) -> TyperCommand:
 
 
 def _help(text: str, *examples: str) -> str:
-    """Return a docstring with examples behind its first paragraph, for a terminal of any width."""
+    """Help text from a docstring, with examples after its first paragraph."""
     first, *others = (" ".join(part.split()) for part in text.split("\n\n"))
     return "\n\n".join([first, "\n".join(f"  {example}" for example in examples), *others])
 
 
 class _Commands(Mapping[str, TyperCommand]):
-    """The commands by name, each imported when it is asked for: one must not wait for the others."""
+    """Commands by name, each imported on first use."""
 
     def __getitem__(self, name: str) -> TyperCommand:
         return _command(name)

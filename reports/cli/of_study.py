@@ -1,4 +1,4 @@
-"""The command of a study that states its options itself."""
+"""Typer command of a study whose dataclass fields are its options."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def command_of(entry: Entry) -> Callable[..., None]:
-    """Return the command: the fields of the study as options; its docstring is the help."""
+    """Command of a study: its fields as options, its docstring as help."""
     study = entry.study_class()
 
     def command(context: typer.Context, plan: Any, workers: options.Workers = None) -> Work:

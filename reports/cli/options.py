@@ -1,4 +1,4 @@
-"""Values of the options that state a method: from text to numbers."""
+"""Parsers of the options of a method: from text to numbers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MOST_VALUES = 100_000
 
 
 def time_step(text: str) -> Step:
-    """Return a time step [s], "auto" or "extrapolated"; whether an engine can use the number is said later.
+    """Time step [s], "auto" or "extrapolated"; the engine checks the number later.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def time_step(text: str) -> Step:
 
 
 def restitution(text: str) -> float | Literal["momentum"]:
-    """Return a coefficient of restitution, or "momentum".
+    """Coefficient of restitution, or "momentum".
 
     Raises
     ------
@@ -45,7 +45,7 @@ def restitution(text: str) -> float | Literal["momentum"]:
 
 
 def numbers(text: str) -> list[float]:
-    """Return the numbers of "6", "1,2,6" or "0.5:30:100", a range with both ends.
+    """Numbers of "6", "1,2,6" or "0.5:30:100", a range with both ends.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def numbers(text: str) -> list[float]:
 
 
 def levels(text: str) -> list[float]:
-    """Return the numbers of a list, or of a range, which is even in the logarithm."""
+    """Numbers of a list, or of a logarithmically even range."""
     values = numbers(text)
     if ":" not in text or not 0.0 < values[0] < values[-1]:
         return values
@@ -84,7 +84,7 @@ def _number(text: str, allowed: str) -> float:
 
 
 def settings(given: Sequence[str] | None) -> dict[str, int | float | str]:
-    """Return settings from texts of the form name=value: a whole number, a number, or the text itself.
+    """Settings from texts name=value: an integer, a float, or the text.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def _value(text: str) -> int | float | str:
 
 
 def panel(title: str) -> Callable[..., object]:
-    """Factory of options in a panel of the help text; without names an option has that of its parameter."""
+    """Factory of options under a help panel; without names an option is named like its parameter."""
 
     def option(help_text: str, *names: str, **more: Any) -> object:
         return typer.Option(*names, help=help_text, rich_help_panel=title, **more)
@@ -155,7 +155,7 @@ def _standing_alone(names: list[str] | None) -> list[str] | None:
 
 
 def engine_names(names: list[str] | None) -> list[str] | None:
-    """Return names of engines, or none alone.
+    """Names of engines, or no engine.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Outputs of a command: a folder or file that holds what another command has made is refused."""
+"""Outputs of a command: files written by another command or plan are not overwritten."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _NOT_OF_PLAN |= {"json", "junit", "markdown", "place"}
 
 
 def claim_folder(context: typer.Context) -> None:
-    """Claim the folder of --out for this command until it ends.
+    """Lock the folder of --out for this command.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def claim_folder(context: typer.Context) -> None:
 
 
 def plan_of(context: typer.Context) -> str:
-    """Return the hash of a command: its name, its options and the content of the files that they name."""
+    """Hash of a command: its name, its options and the content of the named files."""
     from rockwobble.compare.storage.provenance import fingerprint
 
     stated = {name: _content(value) for name, value in context.params.items() if name not in _NOT_OF_PLAN}
@@ -46,7 +46,7 @@ def plan_of(context: typer.Context) -> str:
 
 
 def require_own_file(context: typer.Context, option: str, path: Path) -> None:
-    """Refuse a file that would be replaced and in which the hash of this plan does not stand.
+    """Refuse to replace a file without the hash of this plan.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def _suite(name: str) -> object:
 
 
 def _content(value: Any) -> object:
-    """Return the value of an option; of a file or folder a hash of what is in it."""
+    """Value of an option; for a file or folder a hash of its content."""
     if isinstance(value, list | tuple):
         return [_content(each) for each in value]
     if not isinstance(value, Path):

@@ -1,4 +1,4 @@
-"""The options that state a problem, the same for every command, and the case that they make."""
+"""Options that state a problem, equal in every command, and the case built from them."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 
 @dataclass(frozen=True, kw_only=True)
 class Body(Plan):
-    """The options that state a cylinder, or a slab on cylinders."""
+    """Options of a cylinder, or of a slab on cylinders."""
 
     semidiagonal: float | None = _cylinder(None, "Semidiagonal R = sqrt(b^2 + h^2), in m. Default: 6.")
     tan_alpha: float | None = _cylinder(None, options.SLENDERNESS)
@@ -67,7 +67,7 @@ class Body(Plan):
     )
 
     def cylinder(self) -> RockingBody:
-        """Return the cylinder, by semidiagonal and slenderness or by diameter and height, or the frame.
+        """Cylinder by semidiagonal and slenderness or by diameter and height, or the frame.
 
         Raises
         ------
@@ -96,14 +96,14 @@ class Body(Plan):
 
 
 def under_slab(cylinder: rw.Cylinder, slab_mass_ratio: float | None, columns: int | None) -> RockingBody:
-    """Return a cylinder, or the frame of a slab on such cylinders where a slab is given."""
+    """Cylinder, or with a slab the frame of such cylinders."""
     if slab_mass_ratio is None:
         return cylinder
     return rw.WobblingFrame(cylinder, slab_mass_ratio, 3 if columns is None else columns)
 
 
 def first_given(stated: Plan, *names: str) -> str:
-    """Return the first option of some that is not at its default, as it is typed; empty without one."""
+    """First option that differs from its default, as it is typed; empty if none does."""
     defaults = {each.name: each.default for each in fields(stated)}  # type: ignore[arg-type]
     return next((_flag(name) for name in names if getattr(stated, name) != defaults[name]), "")
 
@@ -113,7 +113,7 @@ def _flag(name: str) -> str:
 
 
 def needs(stated: Plan, names: Iterable[str], *needed: str) -> None:
-    """Refuse options without a meaning of their own.
+    """Refuse options that need another option.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def needs(stated: Plan, names: Iterable[str], *needed: str) -> None:
 
 
 def excludes(stated: Plan, names: Iterable[str], *others: str) -> None:
-    """Refuse options that stand in place of one another.
+    """Refuse options that exclude one another.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def excludes(stated: Plan, names: Iterable[str], *others: str) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class ReadingOptions(Plan):
-    """The options that say how files of records are read, the same for one record and for many."""
+    """Options of record reading, equal for one record and for many."""
 
     units: str | None = _ground(None, options.UNITS)
     record_columns: str | None = _ground(None, options.RECORD_COLUMNS)
@@ -149,7 +149,7 @@ class ReadingOptions(Plan):
     resample: bool = _ground(False, options.RESAMPLE, flag="--resample")
 
     def reading(self) -> rw.Reading:
-        """Return the options as a value.
+        """Reading options as a value.
 
         Raises
         ------
@@ -165,7 +165,7 @@ WAYS = tuple(field.name for field in fields(ReadingOptions))
 
 @dataclass(frozen=True, kw_only=True)
 class Record(ReadingOptions):
-    """The options that state a ground motion."""
+    """Options of one ground motion."""
 
     record: Path | None = _ground(
         None, "File, or folder of a station, with all components; instead of --record-x, -y and -z."
@@ -180,11 +180,11 @@ class Record(ReadingOptions):
 
     @property
     def names_record(self) -> bool:
-        """Whether files are named, which a command then says how it read."""
+        """Whether record files are named, so that the command states how they were read."""
         return any(path is not None for path in (self.record, self.record_x, self.record_y))
 
     def motion(self, *, still: bool = False) -> rw.GroundMotion | None:
-        """Return the ground motion; without a record El Centro, or None where the ground is then `still`.
+        """Ground motion; without a record El Centro, or None on `still` ground.
 
         Raises
         ------
@@ -207,7 +207,7 @@ class Record(ReadingOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class Release(Plan):
-    """The options that state a release."""
+    """Options of a release."""
 
     release_tilt_deg: float | None = _release(
         None, "Tilt at release, in deg. Without a record the ground is then still.", least=0.0, below=90.0
@@ -222,7 +222,7 @@ class Release(Plan):
     )
 
     def initial(self) -> rw.InitialState | None:
-        """Return the state at release; None from rest.
+        """State at release; None from rest.
 
         Raises
         ------
@@ -241,7 +241,7 @@ class Release(Plan):
 
 @dataclass(frozen=True, kw_only=True)
 class Steel(Plan):
-    """The options that state the tendon of one body by what a drawing gives."""
+    """Options of the tendon of one body by its steel data."""
 
     tendon_force: float | None = _tendon(
         None, "Prestress, in N; with --tendon-rigidity, --tendon-length and --mass.", least=0.0
@@ -262,7 +262,7 @@ class Steel(Plan):
     mass: float | None = option(None, MASS, group="Cylinder", above=0.0)
 
     def of_steel(self, bodies: Sequence[RockingBody], gravity: float) -> rw.Tendon | None:
-        """Return the tendon of one column of the one body; None without an option of steel.
+        """Tendon of one column from steel data; None without steel options.
 
         Raises
         ------
@@ -304,7 +304,7 @@ TiedPlan = TypeVar("TiedPlan", bound=TendonPlan)
 def with_steel(
     context: typer.Context, plan: TiedPlan, steel: Steel, bodies: Sequence[RockingBody], gravity: float
 ) -> TiedPlan:
-    """Return the plan of a study with the tendon that steel states, in multiples of the one body.
+    """Plan of a study with the tendon from steel data, as multiples for the one body.
 
     Raises
     ------
@@ -325,14 +325,14 @@ def with_steel(
 
 @dataclass(frozen=True, kw_only=True)
 class Restraint(Steel):
-    """The options that state a tendon: by ratios, or by what a drawing gives."""
+    """Options of a tendon: by ratios, or by steel data."""
 
     tendon_prestress: float | None = _tendon(None, PRESTRESS, least=0.0)
     tendon_stiffness: float | None = _tendon(None, STIFFNESS, least=0.0)
     tendon_yield: float | None = _tendon(None, f"{YIELD}. Default: no yielding.", above=0.0)
 
     def tendon(self, cylinder: RockingBody, gravity: float) -> rw.Tendon | None:
-        """Return the tendon of one column; None without any of its options.
+        """Tendon of one column; None without tendon options.
 
         Raises
         ------
@@ -347,7 +347,7 @@ class Restraint(Steel):
 
 @dataclass(frozen=True, kw_only=True)
 class Problem(Release, Record, Restraint, Body):
-    """The options that state a problem."""
+    """Options of a problem."""
 
     gravity: float = _ground(9.81, GRAVITY)
     friction: float = _ground(
@@ -356,7 +356,7 @@ class Problem(Release, Record, Restraint, Body):
     rolling_resistance: float = _ground(0.0, ROLLING)
 
     def case(self) -> rw.Case:
-        """Return the case that they state.
+        """Case from the options.
 
         Raises
         ------
@@ -379,25 +379,25 @@ class Problem(Release, Record, Restraint, Body):
 
 
 def scaled_name(motion: rw.GroundMotion, scale: float) -> str:
-    """Name of a case: that of its ground motion, with its scale."""
+    """Name of a case: name of its ground motion and scale."""
     factor = scale if scale != 1.0 else None
     return written("motions.scaled", {"name": motion.name, "factor": factor}, {})
 
 
 def unread(problem: Problem) -> Problem:
-    """Return a problem without the options of reading, which belong to other motions."""
+    """Problem without the reading options, which belong to other motions."""
     defaults: dict[str, Any] = {each.name: each.default for each in fields(ReadingOptions)}
     return replace(problem, **defaults)
 
 
 def given_options(context: typer.Context) -> list[str]:
-    """Return the options that the user gave, by the names of their parameters."""
+    """Options given by the user, by parameter name."""
     sources = {name: context.get_parameter_source(name) for name in context.params}
     return [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
 
 
 def stated_options(context: typer.Context, *, also: Collection[str] = ()) -> dict[str, str | bool]:
-    """Return the options of the problem that the user gave, by name; `also`: more of the command's."""
+    """Options of the problem given by the user, by name; `also`: further options of the command."""
     return {
         name: context.params[name] if isinstance(context.params[name], bool) else str(context.params[name])
         for name in given_options(context)
@@ -406,12 +406,12 @@ def stated_options(context: typer.Context, *, also: Collection[str] = ()) -> dic
 
 
 def next_command(context: typer.Context, command: str, *, also: Collection[str] = ()) -> str:
-    """Return the line of another command on the problem that the user gave; `also`: more of its options."""
+    """Command line of another command for the given problem; `also`: its further options."""
     return command_line(command, stated_options(context, also=also))
 
 
 def refuse(context: typer.Context, names: Collection[str], why: str) -> None:
-    """Refuse options that the user gave and that would be ignored.
+    """Refuse given options that would be ignored.
 
     Raises
     ------
@@ -425,7 +425,7 @@ def refuse(context: typer.Context, names: Collection[str], why: str) -> None:
 
 
 def refuse_options_of_engines(context: typer.Context, engines: list[str] | None) -> None:
-    """Refuse options that belong to engines where there are none."""
+    """Refuse engine options if no engine runs."""
     if engines == [options.NO_ENGINE]:
         refuse(context, {"support", "time_step"}, "belongs to engines, got it with --engine none")
 

@@ -1,4 +1,4 @@
-"""Command of a published study that people make for bodies of their own: `rockwobble validity`."""
+"""Command of a published study that users run on their own bodies: `rockwobble validity`."""
 
 from __future__ import annotations
 

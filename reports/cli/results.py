@@ -92,7 +92,7 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
 
 
 def _drawn_by(made: Manifest) -> str:
-    """Release that draws the pages of a kind that this one does not know."""
+    """Release that can draw the pages of an unknown kind."""
     return written("progress.drawn_by", {"detail": made.versions.get("rockwobble")}, {})
 
 
@@ -194,7 +194,7 @@ def report(
 
 
 def _inches(width: str | None, forms: Collection[str]) -> float | None:
-    """Width in print, as 89mm, of the figures of these forms [inch]."""
+    """Print width in inches from an option such as 89mm, for the given file formats."""
     if width is None:
         return None
     if not {"pdf", "png"} & {*forms}:
@@ -266,7 +266,7 @@ def view(
 
 
 def _default_engine(support: str) -> str:
-    """Return the default engine, or in its place the first with the support that loads."""
+    """Default engine, or the first loadable engine with the support."""
     from rockwobble.multibody.engines.registry import engine_fault, find_engine, standard_engines
 
     default = rw.multibody.DEFAULT_ENGINE

@@ -1,4 +1,4 @@
-"""From options that may be repeated, or name many, to cylinders, ground motions, grids and methods."""
+"""Repeated and multi-valued options: cylinders, ground motions, grids and methods."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _motions = OptionsIn("Many ground motions")
 
 @dataclass(frozen=True, kw_only=True)
 class ManyMotions(ReadingOptions):
-    """The options that name many ground motions."""
+    """Options that name many ground motions."""
 
     p695: bool = _motions(
         False, "The 22 far-field pairs of FEMA P-695 (needs the extra records).", flag="--p695"
@@ -41,7 +41,7 @@ class ManyMotions(ReadingOptions):
 
     @property
     def option(self) -> str:
-        """The option that names them; empty without one."""
+        """Name of the option that gives the motions; empty without one."""
         return first_given(self, "p695", "records", "synthetic")
 
     @property
@@ -50,11 +50,11 @@ class ManyMotions(ReadingOptions):
         return _kind("records", "" if self.records is None else self.records.name)
 
     def by_level(self) -> dict[float, list[rw.GroundMotion]]:
-        """Return the motions of each level of the intensity; empty where the table of --records has none."""
+        """Motions of each level; empty if the table of --records has no levels."""
         return {} if self.records is None else rw.read_records_by_level(self.records, self.reading())
 
     def read(self, seed: int) -> tuple[list[rw.GroundMotion], str]:
-        """Return the ground motions and what they are; synthetic ones where none are named.
+        """Ground motions with their description; by default synthetic ones.
 
         Raises
         ------
@@ -79,7 +79,7 @@ def _kind(option: str, name: str = "") -> str:
 
 
 def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, RockingBody]:
-    """Return the cylinders of texts NAME=R,TAN_ALPHA; without any the one of the options.
+    """Cylinders of texts NAME=R,TAN_ALPHA; without any, the cylinder of the options.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, RockingBo
 
 @dataclass(frozen=True, kw_only=True)
 class ManyMethods:
-    """The options that name many methods."""
+    """Options that name many methods."""
 
     model: Annotated[
         list[str] | None,
@@ -125,7 +125,7 @@ class ManyMethods:
     time_step: options.TimeStep = None
 
     def methods(self, body: RockingBody, default: Sequence[str]) -> list[str | rw.Run]:
-        """Return reduced models by name, and each engine with those of the supports that it has.
+        """Methods: reduced models by name, and each engine with its supports.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ _hazard = OptionsIn("Hazard")
 
 @dataclass(frozen=True, kw_only=True)
 class Hazard(Plan):
-    """The options that state the hazard of a site."""
+    """Options of the seismic hazard of a site."""
 
     hazard: Path | None = _hazard(
         None, "Hazard curve, for the annual frequency: CSV of two named columns or of OpenQuake."
@@ -201,7 +201,7 @@ class Hazard(Plan):
     )
 
     def curve(self, period: float, limits: Sequence[str]) -> rw.HazardCurve | None:
-        """Return the hazard curve, None without a file; `period`: that of Sa [s], `limits`: those asked for.
+        """Hazard curve, None without a file; `period`: period of Sa [s], `limits`: given limits.
 
         Raises
         ------
@@ -228,7 +228,7 @@ class Hazard(Plan):
         )
 
     def with_risk(self, results: Fragility, site: rw.HazardCurve) -> Fragility:
-        """Return a fragility with its annual frequencies at the site."""
+        """Fragility with its annual frequencies at the site."""
         return results.with_risk(
             site,
             self.risk_years,
@@ -243,7 +243,7 @@ _motion = OptionsIn("Ground motion")
 
 @dataclass(frozen=True, kw_only=True)
 class GridOptions(GridPlan, ReadingOptions):
-    """The options that state a grid."""
+    """Options of a grid."""
 
     record: list[Path] | None = _motion(
         None, "File or folder with all components of a record; may be repeated."
@@ -255,7 +255,7 @@ class GridOptions(GridPlan, ReadingOptions):
     record_z: list[Path] | None = _motion(None, "Vertical component of each record. Default: none.")
 
     def grid(self, models: list[str] | None) -> rw.Grid:
-        """Return the grid of these axes for some reduced models; default: the recess model.
+        """Grid of these axes for some reduced models; default: the recess model.
 
         Raises
         ------

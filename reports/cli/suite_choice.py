@@ -1,4 +1,4 @@
-"""From a suite file and the options beside it to what will run."""
+"""Runs of a suite file, as changed by options."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def refuse_problem_options(context: typer.Context, suite: str) -> None:
-    """Refuse options that contradict the file of a suite.
+    """Refuse options that contradict the suite file.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def chosen_runs(
 
 
 def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list[rw.Run]:
-    """Return the runs that can be made here, and say which engines are replaced or left out.
+    """Runs that are possible here; replaced and skipped engines are reported.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 
 
 def report_skipped_engines(supports: Sequence[str] = ()) -> None:
-    """Say which engines a default run leaves out, and why: those that do not run here or lack a support."""
+    """Report the engines that a default run skips, and why: not runnable here, or without a support."""
     from rockwobble.compare.runs.choice import left_out, missing_engines, omissions
 
     for name in missing_engines():
@@ -86,7 +86,7 @@ def report_skipped_engines(supports: Sequence[str] = ()) -> None:
 
 
 def suite_lines(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
-    """Yield the lines that echo what will run."""
+    """Yield the lines that describe the runs."""
     from rockwobble.compare.runs.choice import run_labels
 
     groups = Counter(group_of(case.name) for case in cases)

@@ -1,4 +1,4 @@
-"""Commands that check models and engines: `rockwobble check`, `certify` and `verify`."""
+"""Commands for verification: `rockwobble check`, `certify` and `verify`."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _STEP = "Time step of the engine, in s. Default: its default."
 
 @dataclass(frozen=True, kw_only=True)
 class SubjectOptions(Plan):
-    """The options that name what is checked."""
+    """Options that name the subject of a check."""
 
     engine: str | None = _subject(None, "Engine to check, with its protocol.")
     time_step: float | None = _subject(None, _STEP)
@@ -66,7 +66,7 @@ class SubjectOptions(Plan):
     workers: options.Workers = None
 
     def subject(self) -> Subject:
-        """Return the arguments of `rockwobble.check` that name the subject.
+        """Arguments of `rockwobble.check` for the subject.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class SubjectOptions(Plan):
 
 @dataclass(frozen=True, kw_only=True)
 class OutputOptions(Plan):
-    """The options that name files for programs."""
+    """Options that name machine-readable output files."""
 
     json: Path | None = _output(None, "File for all results, as JSON.")
     junit: Path | None = _output(None, "File for a JUnit report (XML).")
@@ -112,7 +112,7 @@ class OutputOptions(Plan):
     overwrite: options.Overwrite = False
 
     def require_writable(self, context: typer.Context) -> None:
-        """Refuse, by a ValueError, a file that cannot be written, or is of another plan."""
+        """Refuse an unwritable file, or one of another plan, by a ValueError."""
         from rockwobble.compare.storage.files import require_file
 
         for option, path in (("--json", self.json), ("--junit", self.junit)):
@@ -122,7 +122,7 @@ class OutputOptions(Plan):
             require_file("--markdown", self.markdown)
 
     def write(self, results: Checks, plan: str) -> None:
-        """Write the folder and the files.
+        """Write the results folder and the output files.
 
         Raises
         ------
@@ -218,7 +218,7 @@ def check(
 
 
 def update(reason: str | None) -> None:
-    """Measure, print the changes, and write the files of the subjects that changed.
+    """Measure, print the changes, and rewrite the baselines of changed subjects.
 
     Raises
     ------

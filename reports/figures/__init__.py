@@ -1,4 +1,4 @@
-"""Figures: what they show, and how they are drawn."""
+"""Figures: pictures as data, and their renderers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def draw(value: object, part: str | None = None) -> Figure:
-    """Return a matplotlib figure of a trace or of results.
+    """Matplotlib figure of a trace or of results.
 
     Parameters
     ----------

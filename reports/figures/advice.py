@@ -1,4 +1,4 @@
-"""The picture of an advice: how it ends, the trace and its spread, other scales, and the friction."""
+"""Picture of an advice: outcome, trace and spread of copies, other scales, and friction."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SCALES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 
 
 def pictures(results: Advice) -> list[Picture]:
-    """Return the picture of an advice; none where nothing was run that could be drawn."""
+    """Picture of an advice; none without runs to draw."""
     panels = []
     if results.moves:
         panels += [_peaks(results), _tilt(results)]
@@ -46,7 +46,7 @@ def pictures(results: Advice) -> list[Picture]:
 
 
 def parts_of(picture: Picture) -> tuple[Picture, Picture]:
-    """Largest tilts, which stand beside the grades of a page, and the other panels of the picture."""
+    """Panel of peak tilts for the page head, and the other panels."""
     assert isinstance(picture.caption, Finding)
     peaks, details = (caption(f"advice_{part}", **picture.caption.values) for part in ("peaks", "details"))
     first, *others = picture.panels

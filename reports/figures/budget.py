@@ -31,14 +31,14 @@ Bar = tuple[str, ErrorBudget, bool]  # a difference: its name, its budget, and w
 
 
 def part_shares(budget: ErrorBudget) -> dict[str, float]:
-    """Return the RMS of each part over the sum of all three: signed parts may cancel, these may not."""
+    """RMS of each part over the sum of the three RMS: signed parts could cancel."""
     sizes = {part: budget.rms(part) for part in PARTS}
     total = sum(sizes.values())
     return {part: size / total if total > 0.0 else 0.0 for part, size in sizes.items()}
 
 
 def budget_picture(view: CaseView, name: str) -> Picture | None:
-    """Return the stacked parts of each run and reference of a case; None where no difference is split."""
+    """Stacked parts of each run and reference of a case; None if no difference is split."""
     bars = [
         (f"{run} − {model}", each, True) for (run, model), each in view.budgets.items() if not each.not_split
     ]
@@ -46,7 +46,7 @@ def budget_picture(view: CaseView, name: str) -> Picture | None:
 
 
 def all_budgets_picture(comparison: Comparison) -> Picture | None:
-    """Bar for each difference that is split, the findings on top.
+    """Bar for each split difference, findings first.
 
     The order is: rows above the bound, the worst first; then those worth explaining; then the rest, which
     is drawn pale.
@@ -90,7 +90,7 @@ def _stack(bars: Sequence[Bar], name: str, case: str | None = None) -> Picture |
 
 
 def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture | None:
-    """Return the parts against time, of differences whose RMS is at least `above` [alpha]."""
+    """Parts against time for differences with an RMS of at least `above` [alpha]."""
     y = Axis(label="|part| / α", unit="-", log=True)
     panels = []
     for (run, model), budget in view.budgets.items():

@@ -1,4 +1,4 @@
-"""The part of a comparison that belongs to one case, in the order in which it is drawn."""
+"""View of one case of a comparison, in drawing order."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class CaseView:
 
     @property
     def traces(self) -> Mapping[str, Trace]:
-        """All traces in the order in which they are drawn: the runs, then the references on top."""
+        """All traces in drawing order: runs first, references on top."""
         return {**self.runs, **self.references}
 
     @property
@@ -55,24 +55,24 @@ class CaseView:
         return tuple(dict.fromkeys(trace.run.support for trace in self.runs.values()))
 
     def partner(self, label: str) -> str:
-        """Return the partner of a run in figures: the model of its support, or else its first reference."""
+        """Partner of a run in figures: model of its support, else its first reference."""
         own = str(self.runs[label].run.own_model)
         return own if own in self.references else next(iter(self.references), label)
 
     def pairs(self) -> Iterator[tuple[SummaryRow, Trace, Trace]]:
-        """Yield the rows of the summary that can be drawn, each with reference and run."""
+        """Yield the drawable rows of the summary, each with reference and run."""
         traces = self.traces
         for row in rows_of(self.rows):
             if row.run in traces and row.reference in traces:
                 yield row, traces[row.reference], traces[row.run]
 
     def divergence(self, row: SummaryRow) -> float:
-        """Return the divergence of a run from its reference, in the time of the run [s]; inf if never."""
+        """Divergence time of a run from its reference, on the time axis of the run [s]; inf if never."""
         return start_of(self.traces[row.reference]) + row.agreement_time if row.diverged else math.inf
 
 
 def case_views(comparison: Comparison) -> list[CaseView]:
-    """Return the view of each case of a comparison."""
+    """View of each case of a comparison."""
     views = []
     for name, case in comparison.cases.items():
         rows = comparison.rows(name)

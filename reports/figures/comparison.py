@@ -31,7 +31,7 @@ def pictures(comparison: Comparison) -> Iterator[Picture]:
 
 
 def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
-    """Return the tilts of one case by support, each with the model of the support, and their differences."""
+    """Tilts of one case by support, each with its model, and their differences."""
     cylinder = view.case.cylinder
     groups = [
         [label for label, trace in view.runs.items() if trace.run.support == support]
@@ -91,7 +91,7 @@ _ANGLE = Axis(label="|angle of turn|", unit="deg", low=0.0)
 
 
 def contact_picture(view: CaseView, name: str) -> Picture:
-    """Return the unwrapped azimuth of the contact point, and by support its distance from the circle."""
+    """Unwrapped azimuth of the contact point, and by support its distance from the circle."""
     return Picture(
         name=name,
         caption=caption("contact_point", name=view.case.name),
@@ -121,7 +121,7 @@ def _azimuth(view: CaseView) -> Panel:
 
 
 def _drift(view: CaseView, support: Support) -> Panel:
-    """(|T| - b)/b, where the tilt is so large that a contact point means something."""
+    """Relative distance from the circle (|T| - b)/b, at tilts large enough for a contact point."""
     layers = []
     for label, trace in view.traces.items():
         # a guided model keeps to the circle: that line is zero
@@ -135,7 +135,7 @@ def _drift(view: CaseView, support: Support) -> Panel:
 
 
 def turn_picture(view: CaseView, name: str, *, notes: bool = True) -> Picture:
-    """Return |angle of turn| of each pass, against its limit for vanishing spin; `notes` give its tilt."""
+    """Angle of turn of each pass with its limit for vanishing spin; `notes`: tilt of each pass."""
     limit = math.degrees(limiting_angle_of_turn(view.case.cylinder))
     layers: list[Layer] = [Rule(at=limit, axis="y", text=f"π √(A/J) = {limit:.2f}°, vanishing spin")]
     for (label, trace), symbol in zip(view.traces.items(), _symbols(view), strict=False):
@@ -170,7 +170,7 @@ def _symbols(view: CaseView) -> list[str]:
 
 
 def orbit_picture(view: CaseView, name: str) -> Picture:
-    """Return the path of each run over that of the model of its support."""
+    """Path of each run over the path of its model."""
     reach = _reach(view)
     east, north = (Axis(label=side, unit="-", low=-reach, high=reach) for side in _SIDES)
     ends = {(row.run, row.reference): view.divergence(row) for row, _, _ in view.pairs()}
@@ -253,7 +253,7 @@ _AXES = (("x, east-west", "#0072B2"), ("y, north-south", "#D55E00"), ("z, up", "
 
 
 def excitation_picture(view: CaseView, name: str) -> Picture | None:
-    """Return the ground acceleration and its horizontal resultant, None where the ground is still."""
+    """Ground acceleration and its horizontal resultant; None on still ground."""
     motion, gravity = view.case.motion, view.case.gravity
     if motion is None:
         return None

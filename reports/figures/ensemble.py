@@ -40,7 +40,7 @@ _LINE = 0.5  # inch for a pair of methods
 
 
 def pictures(ensemble: Ensemble) -> list[Picture]:
-    """Return the distribution of each method, and the ratios of the members of the main pairs."""
+    """Distribution of each method, and the ratios of the members of the main pairs."""
     rows = [row for row in main_pairs(ensemble.methods, ensemble.contrasts) if row["compared"]]
     models = ensemble.methods.loc[ensemble.methods["own_model"] == "", "method"]
     panels = [distributions(ensemble.members, list(models)), *([_ratios(ensemble, rows)] if rows else [])]
@@ -54,7 +54,7 @@ def pictures(ensemble: Ensemble) -> list[Picture]:
 
 
 def distributions(members: pd.DataFrame, models: Collection[str], what: str = "members") -> Panel:
-    """Return the share of members whose peak tilt over alpha is at most x, by method; some are models."""
+    """Empirical distribution of peak tilt over alpha by method; models are drawn as such."""
     standing = members.loc[members["outcome"] != "overturned", "peak_tilt"]
     largest = float(standing.max(skipna=True)) if standing.notna().any() else 0.0
     end = 1.05 * largest or 1.0
@@ -75,7 +75,7 @@ def distributions(members: pd.DataFrame, models: Collection[str], what: str = "m
 def peak_shares(
     runs: pd.DataFrame, name: str, style: Style, end: float, *, width: float = 1.4, notes: bool = False
 ) -> Iterator[Line]:
-    """Yield the share of runs whose peak tilt is at most x, and a triangle for those that overturn.
+    """Yield the empirical distribution of peak tilt, and a triangle for the overturned share.
 
     Runs that failed have no part in it; `notes` name the member of each step.
     """
@@ -118,7 +118,7 @@ def _ratios(ensemble: Ensemble, rows: list[Row]) -> Panel:
 
 
 def margin_rules(margin: float) -> list[Rule]:
-    """Return a line at a ratio of 1, on the strip of the margin around it."""
+    """Line at a ratio of 1 on the strip of the margin."""
     return [
         Rule(at=1.0 / (1.0 + margin), until=1.0 + margin, axis="x", colour=SHADED),
         Rule(at=1.0, axis="x"),
@@ -128,7 +128,7 @@ def margin_rules(margin: float) -> list[Rule]:
 def ratio_axes(
     label: str, low: float, high: float, ticks: Sequence[float], names: Sequence[str]
 ) -> tuple[Axis, Axis]:
-    """Return the axis of ratios, and one with the names below each other."""
+    """Axis of ratios, and axis with the names as a list."""
     x = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=ticks_at(ticks, low, high))
     return x, list_axis(names)
 
@@ -139,7 +139,7 @@ def _bar(row: Row, ends: str, place: int, span: tuple[float, float], name: str, 
 
 
 def _beyond(ratios: Array, place: int, low: float, high: float) -> list[Line | Text]:
-    """Return a triangle at each edge for the members that overturn by one method alone, and their number."""
+    """Triangle at each edge with the number of members that overturn by one method only."""
     marks: list[Line | Text] = []
     for edge, side, which in ((low, "left", ratios == 0.0), (high, "right", np.isinf(ratios))):
         if which.any():
@@ -154,7 +154,7 @@ def _beyond(ratios: Array, place: int, low: float, high: float) -> list[Line | T
 
 
 def ratio_span(logarithms: Array) -> tuple[float, float]:
-    """Return the ends of the axis of ratios, as far from 1 on both sides; what is beyond is at its edges."""
+    """Ends of the ratio axis, symmetric about 1; ratios beyond lie at the edges."""
     known = np.abs(logarithms[np.isfinite(logarithms)])
     reach = _ROOM * max(float(known.max(initial=0.0)), 2.0 * math.log1p(MARGIN))
     return math.exp(-reach), math.exp(reach)

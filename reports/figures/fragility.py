@@ -37,7 +37,7 @@ _TITLES: Mapping[str | None, str] = {ALL: "Mean of all cylinders"}
 
 
 def pictures(results: Fragility) -> list[Picture]:
-    """Return the ratios of the medians, and the curves of each cylinder."""
+    """Ratios of the medians, and the curves of each cylinder."""
     ratios = _ratios(results)
     curves = [
         _curves(results, str(name), place)
@@ -146,7 +146,7 @@ def _panel(results: Fragility, cylinder: str, labels: Sequence[str], title: str)
 
 
 def _groups(counts: pd.DataFrame) -> pd.DataFrame:
-    """Counts of a cloud by tenths of its runs, each at the mean of its logarithms; of stripes as they are."""
+    """Counts of a cloud in ten groups of runs, each at its mean log intensity; of stripes unchanged."""
     if len(counts) <= 40:
         return counts
     ordered = counts.sort_values("intensity")

@@ -1,4 +1,4 @@
-"""Maps: cells by the colour of their values, the scale of the colours, and lines of equal values."""
+"""Maps: coloured cells, colour scale, and contours."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NOTHING = "#d9d9d9"  # behind cells without a value
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Gap:
-    """Cells of a map without a value, and why: a colour and an entry in the legend."""
+    """Reason for empty cells of a map, with colour and legend entry."""
 
     name: str
     colour: str
@@ -23,7 +23,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Heat:
-    """Cells by the colour of their values.
+    """Coloured cells.
 
     Attributes
     ----------
@@ -45,18 +45,18 @@ class Heat:
 
     @property
     def shaded(self) -> bool:
-        """Whether a cell has the colour of its value, and not that of a gap."""
+        """Whether a cell has a coloured value and is no gap."""
         covered = np.any([np.isnan(self.values), *(gap.cells for gap in self.gaps)], axis=0)
         return not covered.all()
 
     def edges(self, *, log_x: bool = False, log_y: bool = False) -> tuple[Array, Array]:
-        """Return the edges of the cells, (len(x) + 1,) and (len(y) + 1,)."""
+        """Cell edges, (len(x) + 1,) and (len(y) + 1,)."""
         return _edges(self.x, log_x), _edges(self.y, log_y)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shades:
-    """The scale of the colours of all maps of a picture.
+    """Colour scale of all maps of a picture.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ class Shades:
 
     @property
     def colours(self) -> str:
-        """Name of the colours, the same to both renderers."""
+        """Name of the colour map, shared by both renderers."""
         return "Blues" if self.centre is None else "RdBu" if self.reverse else "RdBu_r"
 
     def place(self, values: Array) -> Array:
@@ -103,7 +103,7 @@ class Shades:
         return np.asarray(np.clip((values - low) / (high - low), 0.0, 1.0))
 
     def ticks(self) -> list[tuple[float, str]]:
-        """Return places on the scale, and the values there."""
+        """Ticks as positions on the scale and values."""
         if self.log:
             ends = np.log10(self.low), np.log10(self.high)
             values = 10.0 ** np.arange(np.ceil(ends[0] - 1e-9), np.floor(ends[1] + 1e-9) + 1.0)
@@ -119,7 +119,7 @@ _OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
 
 
 def peak_map(x: Array, y: Array, tilt: Array, fell: NDArray[np.bool_]) -> Heat:
-    """Return a map of peak tilts over alpha (len(y), len(x)), in `PEAKS`; NaN was not solved."""
+    """Map of peak tilts over alpha (len(y), len(x)), in `PEAKS`; NaN was not solved."""
     return Heat(
         x=x,
         y=y,
@@ -133,7 +133,7 @@ def peak_map(x: Array, y: Array, tilt: Array, fell: NDArray[np.bool_]) -> Heat:
 
 
 def names(values: Sequence[object]) -> tuple[Array, list[tuple[float, str]]]:
-    """Return places 0, 1, 2, ... for values, and the ticks that name them, in digits that tell them apart."""
+    """Positions 0, 1, 2, ... for values, and tick labels with enough digits to differ."""
     numbers = {value for value in values if isinstance(value, float)}
     digits = next(n for n in range(4, 18) if len({f"{value:.{n}g}" for value in numbers}) == len(numbers))
     said = [f"{value:.{digits}g}" if isinstance(value, float) else str(value) for value in values]
@@ -142,7 +142,7 @@ def names(values: Sequence[object]) -> tuple[Array, list[tuple[float, str]]]:
 
 
 def contour(x: Array, y: Array, values: Array, level: float) -> tuple[Array, Array]:
-    """Return the line (n,), (n,) where values (len(y), len(x)) are `level`; NaN separates its pieces."""
+    """Contour (n,), (n,) of values (len(y), len(x)) at `level`; NaN separates its pieces."""
     from contourpy import contour_generator
 
     if min(values.shape) < 2:  # through a single row of cells there is none

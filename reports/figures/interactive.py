@@ -1,4 +1,4 @@
-"""Pictures as data that `charts.js` draws on a page, to be read on a screen as wide as a phone or wider."""
+"""Pictures as chart data for `charts.js` on pages of any width."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def charts(picture: Picture) -> list[tuple[str, str]]:
 
 
 def colour_bar(shades: Shades) -> str:
-    """Return the HTML element of the scale of the colours."""
+    """HTML element of the scale of the colours."""
     shown = ", ".join(_palette(shades)) if not shades.steps else ", ".join(_steps(shades))
     ticks = "".join(
         f'<span style="left: {100.0 * at:.4g}%">{html.escape(word)}</span>' for at, word in shades.ticks()
@@ -47,7 +47,7 @@ def colour_bar(shades: Shades) -> str:
 
 
 def chart(panel: Panel, picture: Picture) -> dict[str, object]:
-    """Return a panel as data: plain values, and arrays as base64 of little-endian float32."""
+    """Panel as data: plain values, and arrays as base64 of little-endian float32."""
     entries = panel.entries()
     shown = list(entries)[: MOST_ENTRIES - (len(entries) > MOST_ENTRIES)]
     maps = any(isinstance(layer, Heat) for layer in panel.layers)
@@ -66,7 +66,7 @@ def chart(panel: Panel, picture: Picture) -> dict[str, object]:
 
 
 def base64_of(values: ArrayLike) -> str:
-    """Return numbers as base64 of little-endian float32: seven digits are more than a screen shows."""
+    """Base64 of little-endian float32; seven digits suffice on a screen."""
     return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode()
 
 
@@ -146,7 +146,7 @@ def _heat(heat: Heat, panel: Panel, shades: Shades) -> dict[str, object]:
 
 
 def _palette(shades: Shades) -> Sequence[str]:
-    """Return the colours of the scale from its low end to its high one."""
+    """Colours of the scale from its low end to its high one."""
     from matplotlib.colors import to_hex
 
     from .svg import colours
@@ -156,7 +156,7 @@ def _palette(shades: Shades) -> Sequence[str]:
 
 
 def _steps(shades: Shades) -> Iterator[str]:
-    """Yield the stops of a gradient in steps."""
+    """Yield the colour stops of a stepped gradient."""
     palette = _palette(shades)
     for place, colour in enumerate(palette):
         yield f"{colour} {100.0 * place / len(palette):.4g}% {100.0 * (place + 1) / len(palette):.4g}%"

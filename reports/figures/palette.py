@@ -47,12 +47,12 @@ _OTHER_MODEL = Style(colour="#000000", dash="dot")
 
 
 def model_style(label: str) -> Style:
-    """Return the style of a reduced model."""
+    """Style of a reduced model."""
     return _MODEL_STYLES.get(label, _OTHER_MODEL)
 
 
 def run_styles(labels: Sequence[str]) -> dict[str, Style]:
-    """Return the style of each run, the same for the same order of runs."""
+    """Style of each run, the same for the same order of runs."""
     dashes = [dash for dash in DASHES if dash != "none"]
     return {
         label: Style(colour=ORDER[index % len(ORDER)], dash=dashes[index % len(dashes)])
@@ -61,7 +61,7 @@ def run_styles(labels: Sequence[str]) -> dict[str, Style]:
 
 
 def label_styles(labels: Sequence[str], models: Collection[str] = ()) -> dict[str, Style]:
-    """Return the style of each label: that of the model where it is one of the `models`, else that of a run.
+    """Style of each label: model style for labels of `models`, else run style.
 
     Of models of one style the first has it, and the others are drawn as runs.
     """
@@ -87,6 +87,6 @@ def mark_styles(labels: Sequence[str], *, lines: bool = True) -> dict[str, Style
 
 
 def pale(colour: str) -> str:
-    """Return a colour mixed with white, which is drawn alike everywhere, as transparency is not."""
+    """Colour mixed with white, used in place of transparency, which renderers draw differently."""
     parts = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
     return "#" + "".join(f"{round(0.45 * part + 0.55 * 255):02x}" for part in parts)

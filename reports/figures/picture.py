@@ -64,7 +64,7 @@ class Axis:
 
 
 def log_ticks(low: float, high: float) -> list[float]:
-    """Return round places for the ticks of a logarithmic axis, few enough that their numbers do not touch."""
+    """Round tick values of a logarithmic axis, few enough for separate labels."""
     if high / low > 4.0:
         ticks = [tick for tick in _DECADES if low <= tick <= high]
         return ticks if len(ticks) <= _MOST_TICKS else [t for t in ticks if math.log10(t).is_integer()]
@@ -74,7 +74,7 @@ def log_ticks(low: float, high: float) -> list[float]:
 
 
 def list_axis(names: Sequence[str], label: str = "") -> Axis:
-    """Return the y axis of a list that is read downwards, with the names at 0, 1, 2, ..."""
+    """Y axis of a downward list, with names at 0, 1, 2, ..."""
     ticks = list(enumerate(names))
     return Axis(label=label, unit="", low=-0.6, high=len(ticks) - 0.4, ticks=ticks, reverse=True)
 
@@ -85,7 +85,7 @@ CUT = 1.5  # [balance tilt] where an axis ends if a tilt goes farther: a fall wo
 
 
 def tilt_axis(tilts: Iterable[Array], balance: float) -> Axis:
-    """Return the axis of some tilts over alpha, cut where one goes beyond what a body that stands has.
+    """Axis of tilts over alpha, cut above the range of standing bodies.
 
     `balance` is the balance tilt [alpha].
     """
@@ -195,7 +195,7 @@ Layer = Line | Band | Bars | Rule | Text | Heat
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Panel:
-    """One pair of axes and what is drawn there, from the back to the front.
+    """One pair of axes and its contents, from back to front.
 
     Attributes
     ----------
@@ -219,7 +219,7 @@ class Panel:
     second: tuple[Axis, float] | None = None
 
     def entries(self) -> dict[str, Mapping[str, object]]:
-        """Names in the legend, each once, and how their marks look."""
+        """Legend names, each once, with the style of their marks."""
         return {name: look for layer in self.layers for name, look in _entries(layer) if name}
 
 
@@ -230,7 +230,7 @@ def caption(key: str, /, **values: Value) -> Finding:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Picture:
-    """Panels that stand together, with a title and a caption that explain them alone.
+    """Panels with a common title and a self-contained caption.
 
     Attributes
     ----------
@@ -271,7 +271,7 @@ class Picture:
         object.__setattr__(self, "rows", rows)
 
     def entries(self) -> list[str]:
-        """Return the names in the legend of all panels, each once."""
+        """Legend names of all panels, each once."""
         return list(dict.fromkeys(name for panel in self.panels for name in panel.entries()))
 
 
@@ -316,7 +316,7 @@ def ticks_at(
 def group_lines(
     groups: Mapping[str, pd.DataFrame], x: str, y: str, *, lines: bool = True, filled: str = ""
 ) -> list[Line]:
-    """Return a line with marks, or marks alone, of each group of rows by its name, over two of their columns.
+    """Line with marks, or marks alone, of each group of rows by its name, over two of their columns.
 
     Parameters
     ----------
@@ -336,7 +336,7 @@ def group_lines(
 
 
 def bar_ends(first: Array, second: Array) -> Array:
-    """Return the ends of bars one after the other, separated by NaN."""
+    """Ends of bars one after the other, separated by NaN."""
     return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()
 
 

@@ -1,4 +1,4 @@
-"""Both motions in three dimensions: what the page needs to play a case."""
+"""Playback in 3D: page data of the motions of a case."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BEFORE = 0.5  # uplift, from when on the motion is shown [s]
 
 
 def playback(view: CaseView) -> dict[str, object] | None:
-    """Return the data that `playback.js` plays: the runs of a case and the reduced models beside them.
+    """Data for `playback.js`: the runs of a case and their reduced models.
 
     A pose is stated by tilt, rolling angle, twist and contact point, not by a matrix: so the page can
     magnify the tilt and keep the cylinder on its rim. Nothing is to be played where nothing moves.
@@ -91,7 +91,7 @@ def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, ob
 
 
 def _pose(trace: Trace) -> Mapping[str, NDArray[np.float64]]:
-    """Return tilt, rolling angle, twist and contact point, with numbers where the cylinder stands."""
+    """Tilt, rolling angle, twist and contact point, with finite values while the cylinder stands."""
     standing = ~np.isfinite(trace.rolling_angle) | ~np.isfinite(trace.contact_point[:, 0])
     tilt = np.where(standing, 0.0, trace.tilt)
     rolling_angle = np.where(standing, 0.0, trace.rolling_angle)
@@ -122,7 +122,7 @@ def _start(view: CaseView) -> float:
 
 
 def _largest_upright_tilt(view: CaseView) -> float:
-    """Return the largest tilt of what does not fall [rad]."""
+    """Largest tilt of the traces that do not overturn [rad]."""
     tilts = [trace.tilt for trace in view.traces.values()]
     upright = [tilt[np.isfinite(tilt) & (tilt < 1.2 * balance_of(view.case))] for tilt in tilts]
     return max((float(tilt.max(initial=0.0)) for tilt in upright), default=0.0)

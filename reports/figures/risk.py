@@ -1,4 +1,4 @@
-"""Hazard, probability of overturning and their product, which is where the annual frequency comes from."""
+"""Hazard, probability of overturning and their product, the contributions to the annual frequency."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _LEAST = 0.01  # share of the largest contribution below which none is drawn
 
 
 def risk_pictures(results: Fragility) -> list[Picture]:
-    """Return a picture for each cylinder; none without a hazard."""
+    """Picture for each cylinder; none without a hazard."""
     if "risk" not in results.tables:
         return []
     return [

@@ -19,12 +19,12 @@ _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # offset over the spacin
 
 
 def pictures(results: OverturningSpectrum) -> list[Picture]:
-    """Return a map of each series, and the lowest intensities with the safe gaps above them."""
+    """Map of each series, and the lowest intensities with the safe gaps above them."""
     return [picture_of(results.maps)]
 
 
 def picture_of(spectrum: TiltMaps) -> Picture:
-    """Return the picture of tilt maps."""
+    """Picture of tilt maps."""
     size = Axis(label="R", unit="m")
     low, high = (float(spectrum.intensities[end]) for end in (0, -1))
     intensity = Axis(label="peak resultant / (g tan α)", unit="-", low=low, high=high)
@@ -71,7 +71,7 @@ def _map(spectrum: TiltMaps, series: str) -> Heat:
 
 
 def series_styles(model: str) -> dict[str, Style]:
-    """Return the style of each series, in 3D that of the model of this label."""
+    """Style of each series, for 3D the style of the model with this label."""
     return {SPATIAL: model_style(model), **run_styles([PLANAR_X, PLANAR_Y])}
 
 

@@ -1,4 +1,4 @@
-"""Pictures by matplotlib: as SVG, PDF or PNG, the same bytes for the same numbers, or as a figure."""
+"""Matplotlib renderer: SVG, PDF or PNG with reproducible bytes, or a figure."""
 
 from __future__ import annotations
 
@@ -82,12 +82,12 @@ _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
 def svg(picture: Picture, *, titled: bool = False) -> bytes:
-    """Return a picture as SVG, perhaps with its title, where no document says it."""
+    """Picture as SVG, with its title if no document states it."""
     return image(picture, "svg", titled=titled)
 
 
 def image(picture: Picture, form: str, *, titled: bool = False, width: float | None = None) -> bytes:
-    """Return a picture as "svg", "pdf" or "png", see `figure`."""
+    """Picture as "svg", "pdf" or "png", see `figure`."""
     buffer = io.BytesIO()
     with mpl.rc_context(_STYLE):
         drawn = figure(picture, titled=titled, width=width)
@@ -97,7 +97,7 @@ def image(picture: Picture, form: str, *, titled: bool = False, width: float | N
 
 
 def figure(picture: Picture, *, titled: bool = False, width: float | None = None) -> Figure:
-    """Return a picture as a matplotlib figure, of a `width` in print [inch] or of that of a screen."""
+    """Picture as a matplotlib figure, of a print `width` [inch] or of screen width."""
     if width is not None and width < _LEAST_COLUMNS:
         lower = [replace(panel, height=_LOWER * panel.height) for panel in picture.panels]
         picture = replace(picture, columns=1, panels=lower)
@@ -141,12 +141,12 @@ def _width() -> float:
 
 
 def _small() -> float:
-    """Size of what is written into a panel [pt]."""
+    """Font size inside panels [pt]."""
     return float(mpl.rcParams["font.size"]) - 1.5
 
 
 def _settle(drawn: Figure) -> None:
-    """Place the axes where the layout has them, rounded: in its last digits it differs from call to call."""
+    """Fix the axes at rounded layout positions, whose last digits vary between calls."""
     layout = drawn.get_layout_engine()
     assert layout is not None
     layout.execute(drawn)
@@ -159,7 +159,7 @@ def _settle(drawn: Figure) -> None:
 
 
 def _separate(axes: Axes) -> None:
-    """Leave out the words of each tick of the x axis that would touch the last ones."""
+    """Remove x tick labels that would touch their predecessor."""
     free = -np.inf
     for words in axes.get_xticklabels():
         if not (words.get_visible() and words.get_text()):
@@ -323,7 +323,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
 
 
 def colours(shades: Shades) -> Colormap:
-    """Return the colour map of a scale, in steps where it has some."""
+    """Colour map of a scale, in steps where it has some."""
     colour_map: Colormap = mpl.colormaps[shades.colours]
     return colour_map.resampled(shades.steps) if shades.steps else colour_map
 
@@ -358,5 +358,5 @@ def _legend(drawn: Figure, panels: Sequence[Axes]) -> None:
 
 
 def _columns(words: Sequence[str], width: float) -> int:
-    """Columns of a legend as wide as that [inch]: an entry of n letters takes some n/14 + 0.5."""
+    """Number of legend columns for a width [inch]; an entry of n letters takes about n/14 + 0.5."""
     return max(1, min(4, int(width / (max(map(len, words)) / 14.0 + 0.5))))

@@ -1,4 +1,4 @@
-"""Peak tilts of a sweep: maps over size and scale of a grid, distributions over the cases of a suite."""
+"""Peak tilts of a sweep: maps over size and scale of a grid, distributions over suite cases."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NAMED = 12  # so many values have a tick each
 
 
 def pictures(results: Sweep) -> list[Picture]:
-    """Return a map of each part of a grid, or of cases the distribution of their peaks by each run."""
+    """Map of each part of a grid, or distribution of peaks by run for suite cases."""
     return [_maps(results) if "model" in results.table else _distributions(results.table)]
 
 
@@ -47,7 +47,7 @@ def _maps(results: Sweep) -> Picture:
 
 
 def _step(count: int, other: int) -> int:
-    """Return of how many values of an axis one is shown, beside `other` values of the other axis."""
+    """Stride of the drawn values of an axis, given `other` values on the other axis."""
     side = math.isqrt(_MOST_CELLS)
     return math.ceil(count * min(max(other, 1), side) / _MOST_CELLS) if count > side else 1
 
@@ -72,7 +72,7 @@ def _map(own: pd.DataFrame, step_x: int, step_y: int) -> Panel:
 
 
 def _axis(values: Array, label: str, unit: str) -> tuple[Array, Axis]:
-    """Return the places of values and their axis: few or uneven ones stand side by side and are named."""
+    """Positions of values and their axis: few or uneven values are spaced evenly and labelled."""
     steps = np.diff(values)
     if len(values) > _NAMED and np.allclose(steps, steps[0]):
         return values, Axis(label=label, unit=unit)

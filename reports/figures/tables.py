@@ -1,4 +1,4 @@
-"""Numbers of tables over the first column: the figures of results that have none of their own."""
+"""Default figures of results: table columns over the first column."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .picture import Axis, Line, Panel, Picture
 
 
 def pictures(results: Results) -> list[Picture]:
-    """Return a picture of each table that begins with numbers: a panel for each other column of them."""
+    """Picture of each table with a numeric first column: one panel per other numeric column."""
     drawn = []
     for name, table in getattr(results, "tables", {}).items():
         numbers = table.select_dtypes("number").astype(float)

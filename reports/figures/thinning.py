@@ -1,4 +1,4 @@
-"""Thinning of curves: fewer points for a picture, and the same picture."""
+"""Thinning of curves to fewer points without visible change."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _WINDOW = 1.0  # window of an envelope, about one swing [s]
 
 
 def kept_samples(*columns: NDArray[np.float64], points: int = POINTS) -> NDArray[np.intp]:
-    """Samples to draw: both ends, and the extremes of each column in each stretch.
+    """Indices of samples to draw: both ends, and the extremes of each column in each stretch.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def kept_points(x: Array, y: Array, *, points: int = POINTS) -> NDArray[np.intp]
 
 
 def envelope(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the largest value within the last second, shape (n,).
+    """Largest value within the last second, shape (n,).
 
     A difference of two oscillations passes zero all the time; its envelope shows its size. It first
     exceeds a bound exactly where the values do.

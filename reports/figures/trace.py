@@ -79,7 +79,7 @@ def _along_the_rim(trace: Trace) -> Array:
 
 
 def _thin(places: Array) -> Array:
-    """As many of some places (n, 2) as a path shows, and one of those that are NaN between its pieces."""
+    """Subset of points (n, 2) that suffices for a path, with one NaN point between pieces."""
     if not np.isfinite(places).any():
         return places[:1]
     apart = _CLOSE * max(float(np.nanmax(np.ptp(places[np.isfinite(places[:, 0])], axis=0))), 1e-300)

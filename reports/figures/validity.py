@@ -1,4 +1,4 @@
-"""Figures of the report on the limits: the engine's runs, and maps over release, spin, size and intensity."""
+"""Figures of the validity report: engine runs, and maps over release, spin, size and intensity."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ _MAPS = {
 
 
 def map_pictures(tables: Tables) -> list[Picture]:
-    """Maps in which anything is known: of peaks over records, of needs, and of free response."""
+    """Maps with any known value: peaks over records, requirements, and free response."""
     table, free = cells(tables), tables["free_response"]
     still = table["rocked"] == 0
     table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0), still=still)
@@ -112,7 +112,7 @@ def _panels(
     lines: Sequence[tuple[str, float, str, Style]] = (),
     height: float = 2.6,
 ) -> list[Panel]:
-    """Map of a column for each slenderness, with lines of equal values of others."""
+    """Map of a column for each slenderness, with contours of other columns."""
     panels = []
     for tan_alpha, rows in table.groupby("tan_alpha"):
         (x, x_ticks), (y, y_ticks) = (names(sorted(rows[axis].unique())) for axis in axes)

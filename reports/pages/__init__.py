@@ -1,4 +1,4 @@
-"""Pages: what draws the results of each kind, also again from a folder."""
+"""Pages: renderers of the results of each kind, new or stored."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def stored_page(kind: str, folder: Path) -> Page:
-    """Return the page of the results of a kind in `folder`, not drawn yet.
+    """Page of the stored results of a kind in `folder`, not rendered yet.
 
     Raises
     ------
@@ -27,7 +27,7 @@ def stored_page(kind: str, folder: Path) -> Page:
 
 
 def page_of(results: Results) -> Page:
-    """Return the page of results, not drawn yet."""
+    """Page of results, not rendered yet."""
     whole = results if results.manifest else results.made_by()
     name = KINDS[results.kind].name
     module = name if find_spec(f".{name}", __name__) else "tables"

@@ -1,4 +1,4 @@
-"""The page of an advice: verdict, grades, numbers, demands, pictures, details; its findings say the rest."""
+"""Page of an advice: verdict, grades, numbers, demands, pictures, details."""
 
 from __future__ import annotations
 
@@ -118,14 +118,14 @@ def _said(findings: Any) -> list[str]:
 
 
 def _asked(finding: Finding) -> bool:
-    """Whether it is of the input."""
+    """Whether a finding describes the input."""
     return finding.key == "steel.couple" or (
         finding.key.startswith("case.") and finding.key != "case.records"
     )
 
 
 def _opens(finding: Finding) -> bool:
-    """Whether a reader must not miss it."""
+    """Whether a finding is a warning shown at the top."""
     group = finding.key.partition(".")[0]
     if group not in _OPENING or finding.key in (*_PLAIN, "steel.couple"):
         return False
@@ -140,7 +140,7 @@ def _groups(advice: Advice, findings: Findings) -> list[dict[str, Any]]:
 
 
 def _numbers(advice: Advice, findings: Findings) -> Iterator[Row]:
-    """Rows of the numbers: the run as given, and the order statistic that 95 % of each group make."""
+    """Rows of numbers: the run as given, and the tilt that 95 % of each group do not exceed."""
     alpha = math.degrees(advice.cylinder.alpha)
 
     def row(name: str, overturn: str, covered: str, peak: float, without: str, form: str = ".3g") -> Row:
@@ -174,7 +174,7 @@ def _cell(name: str, **values: Value) -> str:
 
 
 def _demand_rows(advice: Advice, findings: Findings) -> Iterator[Row]:
-    """Rows of the design demands, as a designer enters them; each names the group that it is of."""
+    """Rows of the design demands as a designer enters them, each with its governing group."""
     rows = {str(row["demand"]): row for row in advice.demands.to_dict("records")}
     missing = {str(each.values["reason"]): each for each in findings.of("demand") if "reason" in each.values}
     if "moment" in rows:
@@ -214,12 +214,12 @@ def _sizes(row: Mapping[Any, Any], unit: str) -> Row:
 
 
 def _of(advice: Advice, row: Mapping[Any, Any]) -> str:
-    """Number and group of the runs whose demand is covered, and their shaking."""
+    """Count and group of the runs whose demand is covered, with their shaking."""
     return sentence(Finding(key="demand.of", values=covering_values(advice, row)))
 
 
 def _demand_columns(advice: Advice) -> Iterator[list[str]]:
-    """Columns of the design demands; forces of a body only where its mass was given."""
+    """Columns of the design demands; forces of a body only if its mass is given."""
     yield from (["name", "demand", "words"], ["value", "value", "words"], ["tonne", "per tonne", "words"])
     if advice.facts["mass"] is not None:
         yield ["mass", _cell("one_column" if "columns" in advice.facts["cylinder"] else "in_all"), "words"]
@@ -229,18 +229,18 @@ def _demand_columns(advice: Advice) -> Iterator[list[str]]:
 
 
 def _round(value: float) -> str:
-    """Three digits of a force as a designer writes it: without a power of ten where it is large."""
+    """Force with three digits and without a power of ten."""
     return f"{float(f'{value:.3g}'):.10g}" if value >= 1.0 else number(value)
 
 
 def _ratios_of_tendon(advice: Advice) -> dict[str, str]:
-    """Options that state the tendon by ratios, whichever the user gave."""
+    """Options of the tendon as ratios, whichever form the user gave."""
     tendon = advice.facts.get("tendon") or {}
     return {f"tendon_{name}": f"{tendon[name]:.6g}" for name in ("prestress", "stiffness") if name in tendon}
 
 
 def _steps(advice: Advice, findings: Findings, *, short: bool = False) -> list[str]:
-    """Lines of what to do next: words, and the whole command where there is one."""
+    """Next steps as lines, each with its complete command if it has one."""
     commands = _calls(advice) if advice.facts["options"] is None else _commands(advice)
     return [
         _cell(

@@ -1,4 +1,4 @@
-"""A case in words: what was understood of the input, in numbers."""
+"""A case in words: the input as understood, in numbers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def case_lines(case: Case, mass: float | None = None, *, record: bool = True) -> list[str]:
-    """Lines that echo a case and the mass of a column [t]: what was understood, in numbers.
+    """Lines that describe a case and the mass of a column [t].
 
     Without `record` there is none on the files of the ground motion.
     """
@@ -29,14 +29,14 @@ def case_lines(case: Case, mass: float | None = None, *, record: bool = True) ->
 
 
 def conditions(facts: Facts) -> list[str]:
-    """A line on each condition of a study that is not the usual one, see `condition_findings`."""
+    """One line for each condition of a study that differs from the default, see `condition_findings`."""
     from rockwobble.studies.stated import condition_findings
 
     return list(map(sentence, condition_findings(facts)))
 
 
 def record_lines(motions: Iterable[GroundMotion | None]) -> list[str]:
-    """A line on what each ground motion is read from."""
+    """One line on the source of each ground motion."""
     from rockwobble.models.ground_motion import sources_of
 
     return source_lines(sources_of(motions))
@@ -50,7 +50,7 @@ def source_lines(sources: Sequence[str]) -> list[str]:
 
 
 def case_warnings(cases: Iterable[Case], mass: float | None = None) -> list[str]:
-    """A line on each doubt about what cases, and the mass of a column [t], state."""
+    """One line for each doubt about cases and the mass of a column [t]."""
     from rockwobble.models.doubts import doubts_of_cases
 
     from .diagnostics import warnings
@@ -61,7 +61,7 @@ def case_warnings(cases: Iterable[Case], mass: float | None = None) -> list[str]
 def warnings_about(
     motions: Iterable[GroundMotion], cylinders: Iterable[RockingBody] = (), gravity: float = 9.81
 ) -> list[str]:
-    """A line on each doubt about motions, cylinders and a gravity [m/s^2]."""
+    """One line for each doubt about motions, cylinders and gravity [m/s^2]."""
     from rockwobble.models.doubts import doubts_about
 
     from .diagnostics import warnings
@@ -70,5 +70,5 @@ def warnings_about(
 
 
 def group_of(name: str) -> str:
-    """Group of a case: its name up to the first colon or comma, where the values follow."""
+    """Group of a case: its name up to the first colon or comma."""
     return name.split(":")[0].split(",")[0].strip()

@@ -18,7 +18,7 @@ from .wording import sentence, statement
 
 
 def print_checks(console: Console, checks: Checks) -> None:
-    """Print failures, what has no baseline, what could not run, and one line for each group."""
+    """Print failures, missing baselines, skipped checks, and one line per group."""
     for result in checks.results:
         if result.outcome not in (PASSED, NOT_RUN):
             style = "bold red" if result.failed else "yellow"
@@ -37,7 +37,7 @@ def print_checks(console: Console, checks: Checks) -> None:
 
 
 def page_of(checks: Checks) -> Page:
-    """Return the report: what failed first, then every check, group by group."""
+    """Report of checks: failures first, then every check by group."""
 
     def rows(chosen: Sequence[Result]) -> list[Row]:
         # as Markdown, where an angle bracket begins a tag
@@ -59,7 +59,7 @@ def page_of(checks: Checks) -> Page:
 
 
 def as_json(checks: Checks, plan: str = "") -> str:
-    """Return everything, with the floats to the last bit, and the hash of the command."""
+    """All results as JSON, with exact floats and the hash of the command."""
     from rockwobble.models.plain_json import dumps
 
     content = {
@@ -73,7 +73,7 @@ def as_json(checks: Checks, plan: str = "") -> str:
 
 
 def as_junit(checks: Checks, plan: str = "") -> str:
-    """Return a JUnit report with one test case for each check, in a suite for each group.
+    """JUnit report with one test case for each check, in a suite for each group.
 
     The hash of the command is a property of each suite.
     """
@@ -112,12 +112,12 @@ def as_junit(checks: Checks, plan: str = "") -> str:
 
 
 def headline(checks: Checks) -> str:
-    """Return the result of all checks, in one sentence."""
+    """Result of all checks, in one sentence."""
     return statement(checks.findings()[0])
 
 
 def in_words(result: Result) -> str:
-    """Return a result in one sentence."""
+    """One check result as a sentence."""
     return sentence(result.finding())
 
 
@@ -144,7 +144,7 @@ def _kind(result: Result) -> str:
 
 
 def _printable(text: str) -> str:
-    """Return a text without characters that XML forbids, such as those of a terminal's colours."""
+    """Text without characters forbidden in XML, such as terminal colour codes."""
     return "".join(
         c if c in "\t\n" or 0x20 <= ord(c) <= 0xD7FF or 0xE000 <= ord(c) <= 0xFFFD else "?" for c in text
     )

@@ -1,4 +1,4 @@
-"""Lines of the command line that state a problem whole, for pages and commands that name another command."""
+"""Complete command lines of a problem, for pages and for suggestions of other commands."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _BREAK = " \\"  # ends a line that goes on
 
 
 def command_line(command: str, options: Mapping[str, object]) -> str:
-    """Return a command with options by the names of their parameters; a flag is True, None is left out.
+    """Command line with options by parameter name; True is a flag, None is left out.
 
     Examples
     --------
@@ -32,7 +32,7 @@ def command_line(command: str, options: Mapping[str, object]) -> str:
 
 
 def command_lines(command: str, width: int) -> list[str]:
-    r"""Return a command in indented lines that a shell takes as one: broken before options alone.
+    r"""Command over indented lines that a shell reads as one, broken only before options.
 
     A line is longer than `width` only where one option with its value is.
 
@@ -65,6 +65,6 @@ def command_lines(command: str, width: int) -> list[str]:
 
 
 def spectrum_line(options: Mapping[str, object], tan_alpha: float) -> str:
-    """Return the spectrum of the slenderness, slab, ground motion and support that options state."""
+    """Spectrum command for the slenderness, slab, ground motion and support of the options."""
     kept = {name: value for name, value in options.items() if name in _OF_SPECTRUM}
     return command_line("spectrum", {"tan_alpha": f"{tan_alpha:.6g}", **kept})

@@ -1,4 +1,4 @@
-"""The report of a comparison: of few cases each in full, of many an overview and one at a time."""
+"""Report of a comparison: few cases in full, many as an overview with one case at a time."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _ALONE = ("figure", "budget")
 
 
 def page_of(results: Comparison) -> Page:
-    """Return the report of a comparison."""
+    """Report of a comparison."""
     views = case_views(results)
     many, findings = len(views) > SINGLY, results.findings()
     summary, lengths = results.summary, {view.case.name: view.case.length for view in views}
@@ -122,7 +122,7 @@ _USUAL = (*_HEADLINE, *_SUPPORTS, *(f"comparison.{cause}" for cause in _CAUSES))
 
 
 def headline(findings: Sequence[Finding]) -> str:
-    """Ground motion, and agreement times of the runs of each support with their model."""
+    """Ground motion, and agreement times of the runs with the model of their support."""
     return " ".join(statement(each) for each in findings if each.key in _HEADLINE)
 
 
@@ -142,7 +142,7 @@ def counted_diagnostics(summary: pd.DataFrame) -> list[str]:
 
 
 def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
-    """Yield the pictures of a case; of many cases what every one has to show."""
+    """Yield the pictures of a case; with many cases only the common ones."""
     yield tilt_picture(view, f"tilt-{place}" if place else "figure")
     if not many:
         yield orbit_picture(view, f"orbits-{place}")
@@ -162,7 +162,7 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
 
 
 def _thin(pictures: Sequence[Picture]) -> list[Picture]:
-    """Return the pictures with as many points as the page can hold, the same for every curve."""
+    """Pictures thinned to the point budget of a page, equally for every curve."""
     layers = [layer for picture in pictures for panel in picture.panels for layer in panel.layers]
     curves = sum(isinstance(layer, Line) and layer.style.dash != "none" for layer in layers)
     points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, curves)))
@@ -170,7 +170,7 @@ def _thin(pictures: Sequence[Picture]) -> list[Picture]:
 
 
 def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
-    """Parts that only the HTML page has: a chooser for many cases, a player each for few."""
+    """HTML-only parts: a case chooser for many cases, a player each for few."""
     if many:
         groups: dict[str, list[tuple[int, str]]] = {}
         for place, view in enumerate(views):
@@ -190,7 +190,7 @@ def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
 
 
 def first_rows(rows: pd.DataFrame) -> list[Row]:
-    """One row a run, compared with the model of its support within their agreement."""
+    """One row per run, compared with the model of its support until divergence."""
     return [
         {
             **row._asdict(),
@@ -203,7 +203,7 @@ def first_rows(rows: pd.DataFrame) -> list[Row]:
 
 
 def main_rows(view: CaseView, causes: Sequence[str]) -> list[Row]:
-    """Return the main columns of the rows of a case; what overturned or failed has a word for its peak."""
+    """Main columns of the rows of a case; overturned and failed runs have a word for the peak."""
     return [
         {
             **row._asdict(),
@@ -219,12 +219,12 @@ def main_rows(view: CaseView, causes: Sequence[str]) -> list[Row]:
 
 
 def _agrees(row: SummaryRow) -> str:
-    """Return the end of an agreement as in the headline, in the time of the run; that of the run with +."""
+    """Agreement time as in the headline, on the time axis of the run; with + to the end of the run."""
     return f"{row.within_tolerance_until:.2f}{'' if row.left_tolerance else '+'}"
 
 
 def _until(row: SummaryRow, start: float) -> str:
-    """Return the end of an agreement within 1 % of alpha [s], with + if it lasts to the end of the run."""
+    """Agreement time within 1 % of alpha [s], with + if it lasts to the end of the run."""
     return f"{row.agreement_time + start:.2f}" if row.diverged else f"{row.agreement_time:.2f}+"
 
 
@@ -260,7 +260,7 @@ def _degrees(angle: float, uncertainty: float) -> float | None:
 
 
 def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
-    """Return a line for each column of the summary, and the columns of that table: one for each row."""
+    """One line for each column of the summary, and its table columns, one per row."""
     listed = list(rows_of(rows))
     lines: list[Row] = [
         {
@@ -276,7 +276,7 @@ def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
 
 
 def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
-    """Return a line for each group of cases and run, the group with the shortest agreement first.
+    """One line for each group of cases and run, shortest agreement first.
 
     Parameters
     ----------
@@ -303,7 +303,7 @@ def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]
 
 
 def worst_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
-    """Return the worst run of each case, the worst case first, with the place of the case on the page."""
+    """Worst run of each case, worst case first, with the index of the case on the page."""
     rows = _with_shares(summary, lengths)
     worst = rows.sort_values("share", kind="stable")
     places = {name: place for place, name in enumerate(lengths)}
@@ -320,7 +320,7 @@ def worst_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]
 
 
 def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.DataFrame:
-    """Add the group of each case, and the share of the run for which the tilts agree."""
+    """Add the group of each case, and the agreement time over the length of the run."""
     rows = own_rows(summary)
     share = (rows["within_tolerance_until"] / rows["case"].map(lengths)).clip(upper=1.0)
     share = share.where(rows["left_tolerance"], 1.0)
@@ -329,7 +329,7 @@ def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.Data
 
 
 def matrix_tables(matrix: pd.DataFrame) -> list[Row]:
-    """Return a table for each support: support, rows, and columns as templates have them.
+    """One table per support: support, rows, and template columns.
 
     A cell says for one case how long two agree; for many in how many of them they agree to the end.
     """

@@ -14,7 +14,7 @@ from .wording import sentence as worded
 
 
 def sentence(fact: Diagnostic) -> str:
-    """Return a diagnostic in words, without capital and full stop."""
+    """Diagnostic in words, without capital and full stop."""
     return worded(fact.finding())
 
 
@@ -24,7 +24,7 @@ def remarks(facts: Iterable[Diagnostic]) -> str:
 
 
 def warnings(doubts: Iterable[Facts]) -> list[str]:
-    """Return a line on each doubt about records, lengths or gravity, as `doubts_of_cases` gives them."""
+    """Line on each doubt about records, lengths or gravity, as `doubts_of_cases` gives them."""
     lines = []
     for doubt in doubts:
         fields = {name: value for name, value in doubt.items() if name != "record"}
@@ -34,12 +34,12 @@ def warnings(doubts: Iterable[Facts]) -> list[str]:
 
 
 def failure(facts: Iterable[Diagnostic]) -> str:
-    """Return why a run failed, in words."""
+    """Reason of a failed run, in words."""
     return remarks(fact for fact in facts if fact.code in FAILURES) or lines_of("run.failed_unknown")[1]
 
 
 def code_counts(codes: Iterable[Iterable[str]]) -> list[str]:
-    """Number of runs with each diagnostic, from the codes of each run; failures left out."""
+    """Number of runs with each diagnostic code; failed runs excluded."""
     counts = Counter(code for of_run in codes for code in set(of_run))
     shown = [code for code in CODES if code not in FAILURES and counts[code]]
     lines = {code: lines_of(f"diagnostic.{code}") for code in shown}

@@ -15,7 +15,7 @@ _ANSWERS = tuple(f"ensemble.{name}" for name in ("no_pairs", "equivalent", "diff
 
 
 def page_of(ensemble: Ensemble) -> Page:
-    """Return the page of an ensemble."""
+    """Page of an ensemble."""
     rows = [
         {str(name): value for name, value in row.items()}
         | {"ratio": value_if_enough(row["ratio"], row["compared"], ratio=True)}

@@ -1,4 +1,4 @@
-"""The page to play with: one file in which the reduced models run, with ground motions and a first state."""
+"""Interactive page: one file with the reduced models, ground motions and an initial state."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _VERDICTS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shaking:
-    """A ground motion of the page.
+    """Ground motion of the interactive page.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Shaking:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class State:
-    """Initial values of the sliders, by their names in the address of the page.
+    """Initial slider values, named as in the address of the page.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class State:
 
 
 def standard_shakings() -> list[Shaking]:
-    """Return El Centro, a pulse and two synthetic ground motions."""
+    """Default ground motions of the page: El Centro, a pulse and two synthetic ones."""
     synthetic = synthetic_motions(2, peak=_SYNTHETIC_PEAK, seed=_SEED, duration=_SYNTHETIC_LENGTH)
     made = f"rw.synthetic_motions(2, peak={_SYNTHETIC_PEAK}, seed={_SEED}, duration={_SYNTHETIC_LENGTH})"
     sine = pulse("one-sine", amplitude=_SYNTHETIC_PEAK, period=_PULSE_PERIOD)
@@ -134,7 +134,7 @@ def explore_page(
     free: float = 10.0,
     plan: str = "",
 ) -> str:
-    """Return the page as HTML that needs nothing else.
+    """The page as self-contained HTML.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def _doubles(values: ArrayLike) -> str:
 def _panel(
     x: Axis, y: Axis, height: float, entries: Mapping[str, Style], **look: object
 ) -> dict[str, object]:
-    """An empty panel as `charts.js` takes it, which the page fills; entries are those of its legend."""
+    """Empty panel in the format of `charts.js`, filled by the page; `entries`: its legend."""
     nothing = np.empty(0)
     lines = [Line(x=nothing, y=nothing, name=name, style=style, width=2.0) for name, style in entries.items()]
     empty = chart(Panel(x=x, y=y, layers=lines, height=height), Picture(name="explore", panels=()))

@@ -28,7 +28,7 @@ _UNIT = 1e4  # frequencies in 1e-4 a year
 
 
 def page_of(fragility: Fragility) -> Page:
-    """Return the page of a fragility."""
+    """Page of a fragility."""
     drawn = pictures(fragility)
     names = [picture.name for picture in drawn]
     drawn += risk_pictures(fragility)
@@ -37,7 +37,7 @@ def page_of(fragility: Fragility) -> Page:
 
 
 def fragility_values(fragility: Fragility) -> dict[str, object]:
-    """Return the values of the template of a fragility."""
+    """Values of the template of a fragility."""
     measure, cylinders, findings = (
         MEASURES[str(fragility.facts["measure"])],
         fragility.facts["cylinders"],
@@ -94,7 +94,7 @@ def fragility_values(fragility: Fragility) -> dict[str, object]:
 
 
 def _with_known_spread(row: Row, fits: Iterable[Row]) -> Row:
-    """Return a row without dispersions where a curve is not fitted: that of a step is 0 by convention."""
+    """Row without dispersions for unfitted curves, whose step has a nominal dispersion of 0."""
     methods = {row["method"], row.get("against", row["method"])}
     steps = (
         each["kind"] == SEPARATED
@@ -110,7 +110,7 @@ def _with_known_spread(row: Row, fits: Iterable[Row]) -> Row:
 
 
 def _counts(fragility: Fragility) -> dict[str, object]:
-    """One row for each cylinder, method and limit: motions that exceed it, by level where there are some."""
+    """One row per cylinder, method and limit: motions that exceed it, by level for stripes."""
     levels: list[float] = [*fragility.counts["intensity"].unique()] if fragility.facts["levels"] else []
     rows = [
         {
@@ -156,7 +156,7 @@ def _gaps(fragility: Fragility) -> list[Row]:
 
 
 def _states(fragility: Fragility) -> list[Row]:
-    """One row for each cylinder and method: the median of each limit, or what bounds it."""
+    """One row per cylinder and method: median of each limit, or its bound."""
     rows: dict[tuple[str, str], Row] = {}
     for row in fragility.fits.to_dict("records"):
         key = str(row["cylinder"]), str(row["method"])
@@ -166,7 +166,7 @@ def _states(fragility: Fragility) -> list[Row]:
 
 
 def _risk_values(fragility: Fragility) -> dict[str, object] | None:
-    """Values of the part on the annual frequency of overturning; None without a hazard."""
+    """Template values on the annual frequency of overturning; None without a hazard."""
     if "risk" not in fragility.tables:
         return None
     rows = rows_of(fragility.tables["risk"])

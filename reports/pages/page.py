@@ -1,4 +1,4 @@
-"""A report: one template in Markdown, shown in a terminal, as a document and as a page.
+"""Report framework: one Markdown template for terminal, document and HTML page.
 
 A template is given plain values and says the words. In it stand ``{{ picture("name") }}``,
 ``{{ table(rows, [["key", "heading [unit]", ".3g"], ...]) }}`` and ``{{ block("name") }}``, each alone in a
@@ -48,14 +48,14 @@ _LEAST_WIDTH = 80  # width for output that is not a terminal, such as a file
 
 
 class MarkdownText(str):
-    """Text that is Markdown already."""
+    """Text in Markdown, not to be escaped."""
 
     __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Details:
-    """Beginning of the details under a title, or their end, which has none."""
+    """Start of a foldable section under a title, or its end, without title."""
 
     title: str
 
@@ -94,7 +94,7 @@ class Page:
     outputs: Sequence[Output] = ("markdown", "html")
 
     def files(self, *, document: bool = True) -> dict[str, bytes]:
-        """Return the files by name: NAME.html, and for a `document` NAME.md with its pictures as SVG."""
+        """Files by name: NAME.html, and with `document` NAME.md and its SVG pictures."""
         titled, texts = self.alone is not None, {}
         if "markdown" in self.outputs and document:
             texts[f"{self.name}.md"] = self.markdown()
@@ -114,7 +114,7 @@ class Page:
         }
 
     def exports(self, forms: Sequence[str], *, width: float | None = None) -> dict[str, bytes]:
-        """Return its figures as "pdf" or "png", and its tables as "tex", by the names of their files.
+        """Figures as "pdf" or "png", and tables as "tex", by file name.
 
         Figures are `width` wide [inch]. A table has the name of the page and of the heading above it.
         """
@@ -139,7 +139,7 @@ class Page:
                 heading = titles[-1]
 
     def markdown(self) -> str:
-        """Return the document."""
+        """The report as Markdown document."""
 
         def as_text(thing: Part) -> str:
             if isinstance(thing, Details):
@@ -153,7 +153,7 @@ class Page:
         return "\n\n".join(filter(None, parts)) + "\n"
 
     def html(self) -> str:
-        """Return the page, which needs nothing else."""
+        """The report as self-contained HTML page."""
         parts = self._parts("html")
         body = "\n".join(_html(part) for part in parts)
         title = re.search(r"<h1.*?>(.*?)</h1>", body)
@@ -169,7 +169,7 @@ class Page:
         )
 
     def show(self, console: Console | None = None, *, details: bool = False) -> None:
-        """Print the report in a terminal: its words and tables, what is folded only with `details`."""
+        """Print the report in a terminal, folded sections only with `details`."""
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
@@ -184,7 +184,7 @@ class Page:
             before = part
 
     def _parts(self, output: Output, width: int = 0) -> list[Part]:
-        """Return the rendered template, cut where a picture, a table, a block or a fold stands."""
+        """Rendered template, split at pictures, tables, blocks and folds."""
         things: list[Part] = []
         keys: set[str] = set()
         pictures = {picture.name: _worded(picture) for picture in self.pictures}
@@ -231,7 +231,7 @@ class Page:
 
 
 def _unfold(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
-    """Yield the words and tables of a terminal, those of a fold only with `details`."""
+    """Yield the words and tables for a terminal; folded ones only with `details`."""
     folded = False
     for part in parts:
         if isinstance(part, Details):
@@ -241,7 +241,7 @@ def _unfold(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
 
 
 def _print_words(console: Console, text: str) -> None:
-    """Print Markdown; a command at the end of a line stays whole, behind its words where there is room."""
+    """Print Markdown; a command at the end of a line is never broken."""
     words, *rest = _COMMAND.split(text)
     for lead, command, more in zip(rest[::3], rest[1::3], rest[2::3], strict=True):
         shown = _as_printed(console, f"{words}{lead}")
@@ -282,7 +282,7 @@ def _html(part: Part) -> str:
 
 
 def figure_html(picture: Picture) -> str:
-    """A picture as an element of a page, with title and caption."""
+    """HTML element of a picture, with title and caption."""
     shown = _worded(picture)
     panels = "".join(
         f"<div>{f'<h4>{html.escape(title)}</h4>' if title else ''}{plot}</div>"
@@ -296,7 +296,7 @@ def figure_html(picture: Picture) -> str:
 
 
 def to_html(text: str) -> str:
-    """Return Markdown as HTML; headings have their words as id, as on GitHub."""
+    """HTML from Markdown; heading ids as on GitHub."""
     parser = MarkdownIt("commonmark", {"html": False}).enable("table")
     tokens = parser.parse(text)
     for opening, content in pairwise(tokens):
@@ -306,7 +306,7 @@ def to_html(text: str) -> str:
 
 
 def fragment(template: str, **values: object) -> str:
-    """A piece of a page, in which values are text and no markup."""
+    """HTML piece of a page with escaped values."""
     return _templates(autoescape=True).get_template(template).render(**values)
 
 
@@ -333,7 +333,7 @@ def _environment() -> Environment:
 
 
 def _escape(value: object) -> object:
-    """Return a text without what Markdown would take for markup; what is Markdown already stays."""
+    """Text with Markdown characters escaped, unless it is Markdown."""
     if isinstance(value, str) and not isinstance(value, MarkdownText) and not hasattr(value, "__html__"):
         return _MARKUP.sub(lambda match: f"\\{match[0]}", value)
     return value

@@ -1,4 +1,4 @@
-"""The page of a run: its outcome in words, and the numbers that its method gives."""
+"""Page of a single run: outcome in words, and the numbers of its method."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _DETAILS = ("quantity.closest", "quantity.computing_time")  # which a terminal l
 
 
 def page_of(run: SingleRun) -> Page:
-    """Return the page of a run."""
+    """Page of a run."""
     trace, findings = run.trace, run.findings()
     said = " ".join(statement(each.finding()) for each in _limits(trace))
     sizes = findings.of("quantity")
@@ -44,6 +44,6 @@ def _rows(sizes: Findings | list[Finding]) -> list[dict[str, str]]:
 
 
 def _limits(trace: Trace) -> list[Diagnostic]:
-    """Return the diagnostics of a run up to its fall, in which contact is lost and the rim slips."""
+    """Diagnostics of a run up to its overturning time; contact loss and slip follow it."""
     held = trace.assumptions_until(overturning_time(trace))
     return [*trace.facts, *(held.breaches if held else ())]

@@ -15,13 +15,13 @@ _ANSWERS = ("mode.", "spectrum.unsolved", "spectrum.overturned")
 
 
 def page_of(spectrum: OverturningSpectrum) -> Page:
-    """Return the page of a spectrum."""
+    """Page of a spectrum."""
     values = {**spectrum_values(spectrum), "about": spectrum.manifest}
     return Page(name="spectrum", template="spectrum", values=values, pictures=pictures(spectrum))
 
 
 def spectrum_values(spectrum: OverturningSpectrum) -> dict[str, object]:
-    """Return the values of the templates of a spectrum, for its own page and for that of the paper."""
+    """Template values of a spectrum, for its page and for the paper's page."""
     contrast = spectrum.tables["contrast"]
     said = {each.key: statement(each) for each in spectrum.findings()}
     return {

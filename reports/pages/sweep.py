@@ -1,4 +1,4 @@
-"""The page of a sweep: what was run, and what became of each part of it."""
+"""Page of a sweep: input, and outcomes of each part."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _OF_CASES = (("run", "run", "words"),)
 
 
 def page_of(results: Sweep) -> Page:
-    """Return the page of a sweep."""
+    """Page of a sweep."""
     plan, grid = results.facts, "model" in results.table
     values = {
         "plan": plan,

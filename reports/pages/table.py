@@ -1,4 +1,4 @@
-"""Tables and numbers of a page: what a value looks like, whatever it is shown on."""
+"""Tables and number formats of a page, for all outputs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NONE = "–"
 
 
 def number(value: object, form: str = ".3g") -> str:
-    """Return a value in words: a format of Python, or "percent", "duration", "words" or "tag" (as it is).
+    """Value in words: a Python format, or "percent", "duration", "words" or "tag" (unchanged).
 
     After "most " a format of so many digits (".3g", ".2f", "percent") rounds up, after "least " down: a bound
     that is stated holds. What is not known, NaN and None, is a dash.
@@ -55,7 +55,7 @@ def number(value: object, form: str = ".3g") -> str:
 
 
 def scattered(scatter: float, most: int = 4) -> str:
-    """Form of a number of this relative scatter: its last digit is no finer than a tenth of the scatter.
+    """Format of a number with relative scatter: last digit no finer than a tenth of the scatter.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def scattered(scatter: float, most: int = 4) -> str:
 
 
 def interval_form(form: str, *numbers: object) -> str:
-    """Form of a number and the ends of its interval: two digits of half the width of that, or of itself.
+    """Format of a number and its interval ends: two digits of the half width, or of the number.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def interval_form(form: str, *numbers: object) -> str:
 
 
 def span(values: Sequence[float], form: str = ".3g") -> str:
-    """The least and the largest of some numbers; one where all are the same."""
+    """Range of some numbers as text; one number if all are equal."""
     return " to ".join(dict.fromkeys(number(each, form) for each in (min(values), max(values))))
 
 
@@ -105,7 +105,7 @@ _EXACT = 12  # digits beyond are those of binary arithmetic
 
 
 def _round(value: float, form: str, rounding: str) -> float:
-    """Return a number rounded to one side, to the digits that a format shows."""
+    """Number rounded to one side, to the digits of a format."""
     exact = Decimal(f"{value:.{_EXACT}g}")
     if form == "percent":
         whole = abs(exact) >= Decimal("0.1")  # as `_percent` shows it
@@ -123,7 +123,7 @@ def _percent(share: float) -> str:
 
 
 def _short(text: str) -> str:
-    """Return 1e-7 for 1e-07 and 0.00 for -0.00, which is how a computer writes them."""
+    """Number without computer notation: 1e-7 for 1e-07 and 0.00 for -0.00."""
     text = re.sub(r"^-(?=0[0.]*(e|$))", "", text)
     return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", text)
 
@@ -168,7 +168,7 @@ _GREEK = "GREEK SMALL LETTER "
 
 
 def latex_text(text: str) -> str:
-    r"""Return a text as LaTeX shows it, with every special character escaped.
+    r"""Text with every special LaTeX character escaped.
 
     Examples
     --------
@@ -186,7 +186,7 @@ def latex_text(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column: the name of its values in a row, what stands above it with its unit, and their format.
+    """Table column: key of its values, heading with unit, and format.
 
     One that is `wide` is left out where a terminal has no room for it.
     """
@@ -198,18 +198,18 @@ class Column:
 
     @property
     def text(self) -> bool:
-        """Whether it holds words, which stand on the left."""
+        """Whether the column holds words, aligned left."""
         return self.form in ("words", "tag")
 
     def form_in(self, row: Row) -> str:
-        """Format in a row that may have an interval of the number, NAME_low and NAME_high."""
+        """Format in a row with an optional interval NAME_low and NAME_high."""
         name = re.sub("_(low|high)$", "", self.key)
         return interval_form(self.form, *(row.get(f"{name}{end}") for end in ("", "_low", "_high")))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Table:
-    """Rows under columns; with `group`, rows of one value of it stand together under that value.
+    """Rows under columns; with `group`, rows are grouped by that value.
 
     Attributes
     ----------
@@ -230,16 +230,16 @@ class Table:
     compact: bool = False
 
     def groups(self) -> list[tuple[str, list[list[str]]]]:
-        """Return the cells of the rows, by group."""
+        """Cells of the rows, by group."""
         grouped = groupby(self.rows, key=lambda row: str(row[self.group]) if self.group else "")
         return [(name, [self.cells(row) for row in rows]) for name, rows in grouped]
 
     def cells(self, row: Row) -> list[str]:
-        """Cells of one row: a number with an interval has as many digits as that leaves."""
+        """Cells of one row: interval width sets the digits of a number."""
         return [number(row.get(column.key), column.form_in(row)) for column in self.columns]
 
     def markdown(self) -> str:
-        """Return the table in Markdown, which has no groups: they are a first column, or a table each."""
+        """Table in Markdown; groups become a first column, or separate tables."""
         if self.folded:
             tables = (f"**{name}**\n\n{self._markdown([], rows)}" for name, rows in self.groups())
             return "\n\n".join(tables)
@@ -254,7 +254,7 @@ class Table:
         return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in whole)
 
     def latex(self) -> str:
-        """Return the table as a LaTeX tabular, with units in its heads; a group is a first column."""
+        """LaTeX tabular with units in its headings; groups become a first column."""
         lead = [self.group.replace("_", " ")] if self.group else []
         heads = [*lead, *(column.heading for column in self.columns)]
         lines = [[*([name] if self.group else []), *cells] for name, rows in self.groups() for cells in rows]
@@ -274,7 +274,7 @@ class Table:
         )
 
     def html(self) -> str:
-        """Return the table as HTML: scrolled on its own where it is wider than the screen."""
+        """HTML table, scrollable if wider than the screen."""
         heads = "".join(f'<th scope="col"{_class(c)}>{html.escape(c.heading)}</th>' for c in self.columns)
         parts = []
         for name, rows in self.groups():
@@ -302,7 +302,7 @@ class Table:
         return f"<tr>{''.join(tags)}</tr>"
 
     def fitting_columns(self, width: int) -> Sequence[Column]:
-        """Return the columns for which a terminal of this width has room.
+        """Columns that fit a terminal width.
 
         The last wide ones go first, where a cell would take two lines; then the last, where a word would be
         broken. The first stays.
@@ -315,7 +315,7 @@ class Table:
         return columns
 
     def rich(self, width: int) -> Group:
-        """Return the table for a terminal of so many columns, in which no word is broken."""
+        """Table for a terminal width, without broken words."""
         from rich.console import Group
         from rich.text import Text
 
@@ -337,7 +337,7 @@ class Table:
     def _lengths(
         self, columns: Sequence[Column], *, stacked: bool = True, wrapped: bool = False
     ) -> list[int]:
-        """Return the length of the longest line in each column.
+        """Length of the longest line in each column.
 
         The words of a heading `stacked` one above the other, or only its unit below it; words `wrapped` where
         that is needed.
@@ -355,7 +355,7 @@ class Table:
         return [length(column) for column in columns]
 
     def _widths(self, columns: Sequence[Column], width: int, *, stacked: bool) -> list[int]:
-        """Return the widths of the columns: as wide as they need, where there is room for that."""
+        """Column widths: as needed, if the total fits."""
         most = self._lengths(columns, stacked=stacked)
         widths = self._lengths(columns, stacked=stacked, wrapped=True)
         spare = width - sum(widths) - len(columns) + 1
@@ -373,7 +373,7 @@ class Table:
         *,
         stacked: bool = False,
     ) -> RichTable:
-        """Return some rows, or the heading, `stacked` with one word above the next."""
+        """Rows or heading for rich; `stacked`: one word per line."""
         from rich import box
         from rich.table import Table as RichTable
         from rich.text import Text
@@ -395,7 +395,7 @@ class Table:
 
 
 def columns_of(given: Iterable[Sequence[str]]) -> list[Column]:
-    """Return the columns of lists as templates have them: key, heading, and maybe format and "wide"."""
+    """Columns from template lists: key, heading, and optionally format and "wide"."""
     return [
         Column(key, heading, rest[0] if rest else ".3g", "wide" in rest[1:]) for key, heading, *rest in given
     ]

@@ -1,4 +1,4 @@
-"""The page of results that have no page of their own: main numbers, findings, tables."""
+"""Default page of results: main numbers, findings, tables."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ _WORDS = {name: support.words for name, support in SUPPORTS.items()}
 
 
 def page_of(results: Validity) -> Page:
-    """The report."""
+    """Page of the validity report."""
     tables, structure, findings = results.tables, results.structure, results.findings()
     drawn = pictures(results)
 
@@ -90,7 +90,7 @@ def page_of(results: Validity) -> Page:
 
 
 def _contrasts(table: pd.DataFrame) -> Rows:
-    """The rows of paired ratios with their point in words, but for half the step."""
+    """Rows of paired ratios with their point in words, without the half-step runs."""
     table = table[table["method"].isin(METHODS)]
     points = [
         f"tan α = {slender:g}, R = {size:g} m, {level:g} g tan α"
@@ -100,7 +100,7 @@ def _contrasts(table: pd.DataFrame) -> Rows:
 
 
 def _summary(table: pd.DataFrame) -> Rows:
-    """The maps in one table: by slenderness and intensity the least and the largest over the sizes."""
+    """Summary of the maps: range over the sizes by slenderness and intensity."""
     shown = ["flat_ratio", "flat_90", "copy_90", "overturned", "flat_overturned"]
     rows = table.groupby(["tan_alpha", "intensity"])[shown].agg(["min", "max"])
     rows.columns = pd.Index(["_".join(each) for each in rows.columns])
@@ -110,7 +110,7 @@ def _summary(table: pd.DataFrame) -> Rows:
 
 
 def _needs(table: pd.DataFrame) -> dict[str, object]:
-    """Requirements: a row for each slenderness, a column for each intensity."""
+    """Requirements: one row per slenderness, one column per intensity."""
     names = [f"{intensity:g}" for intensity in sorted(table["intensity"].unique())]
     rows = [
         {
@@ -136,7 +136,7 @@ def _traces(table: pd.DataFrame) -> Rows:
 
 
 def _changes(table: pd.DataFrame) -> Rows:
-    """Changes of the peak under El Centro; how many overturn, with the vertical component and without."""
+    """Peak changes under El Centro, and overturning counts with and without the vertical component."""
     overturned = table["overturned"].drop("copy")
     return table.assign(case=table.index.map(_CHANGES), overturned=overturned).to_dict("records")
 

@@ -12,7 +12,7 @@ from .page import Page, fragment
 
 
 def page_of(results: View) -> Page:
-    """Return the page of a view.
+    """Page of a view.
 
     Raises
     ------

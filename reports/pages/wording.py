@@ -1,4 +1,4 @@
-"""Findings and diagnostics in English: every line of `words.toml`, and how its values are written.
+"""Findings and diagnostics in English: the lines of `words.toml` with formatted values.
 
 A line names values in braces. How a value looks follows its unit: an angle in degrees, a share in per cent,
 a time in s, a number with its 95 % interval behind it, to the digits that
@@ -57,7 +57,7 @@ def words() -> Mapping[str, Mapping[str, str | list[str]]]:
 
 
 def lines_of(key: str) -> tuple[str, str]:
-    """Short form and sentence of a key, which are one where only one is stated.
+    """Short form and sentence of a key; equal if only one is given.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def joined(findings: Iterable[Finding]) -> str:
 
 
 def text(findings: Iterable[Finding]) -> str:
-    """Findings in words, one a line; a grade behind what it grades."""
+    """Findings in words, one per line; a grade after its subject."""
     return "\n".join(f"{_level(each)}{sentence(each)}" for each in findings)
 
 
@@ -101,12 +101,12 @@ def written(key: str, values: Mapping[str, Value], units: Mapping[str, str], *, 
 
 
 def some_of(names: Sequence[str], more: int) -> str:
-    """Names, and how many more there are."""
+    """First names, and the number of the others."""
     return written("progress.names", {"names": tuple(names) or ("",), "count": more or None}, {})
 
 
 def filled(line: str, values: Mapping[str, Value], units: Mapping[str, str]) -> str:
-    """A line with its values; see the module."""
+    """Line of words with its values filled in; see the module."""
     line = _OPTIONAL.sub(lambda part: part[1] if _all_known(part[1], values) else "", line)
     scatter = values.get("share_scatter")
     digits = scattered(scatter if isinstance(scatter, float) else math.nan)

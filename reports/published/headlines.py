@@ -37,14 +37,14 @@ def numbers(text: str) -> list[float]:
 
 
 def peaks(runs: pd.DataFrame, member: str, peak: str) -> pd.DataFrame:
-    """A row a member, a column a method: its peak, infinite where it overturns."""
+    """Peaks by member (rows) and method (columns), infinite if overturned."""
     kept = runs[runs["outcome"] != "failed"].copy()
     kept.loc[kept["outcome"] == "overturned", peak] = math.inf
     return kept.pivot_table(index=member, columns="method", values=peak, aggfunc="first")
 
 
 def ratios(wide: pd.DataFrame, method: str, against: str) -> np.ndarray[Any, Any]:
-    """Ratios of the two peaks of a member; one that falls, or rests, by both has none."""
+    """Ratios of the peaks of each member by two methods; none if both overturn or stay at rest."""
     both = wide[[method, against]].dropna()
     ours, theirs = both[method].to_numpy(), both[against].to_numpy()
     alike = (ours == theirs) & (np.isinf(ours) | (ours == 0.0))
@@ -52,7 +52,7 @@ def ratios(wide: pd.DataFrame, method: str, against: str) -> np.ndarray[Any, Any
 
 
 def quantile(ordered: np.ndarray[Any, Any], share: float) -> float:
-    """The order statistic of index share (n + 1), between two of them in proportion of their logarithms."""
+    """Order statistic of index share (n + 1), interpolated between neighbours by their logarithms."""
     with np.errstate(divide="ignore"):
         logs = np.log(ordered)
     index = min(max(share * (len(logs) + 1), 1.0), len(logs)) - 1.0
@@ -62,7 +62,7 @@ def quantile(ordered: np.ndarray[Any, Any], share: float) -> float:
 
 
 def check_validity() -> None:
-    """Median ratios, and what one record in twenty exceeds."""
+    """Check median ratios and 95th percentiles of the validity page."""
     runs = table("validity/records")
     entries: dict[str, list[list[float]]] = {}
     for _, point in runs.groupby(["tan_alpha", "semidiagonal", "intensity"]):
@@ -83,7 +83,7 @@ def check_validity() -> None:
 
 
 def check_comparison() -> None:
-    """Ends of agreement in the recess and on flat ground."""
+    """Check agreement times in the recess and on flat ground."""
     rows = pd.read_csv(PUBLISHED / "compare" / "summary.csv")
     models = {"recess": "recess model", "flat": "flat-ground model", "ring": "recess model"}
     ends_of = [
@@ -97,7 +97,7 @@ def check_comparison() -> None:
 
 
 def check_ensemble(folder: Path) -> None:
-    """Median ratios, counts and p of each contrast."""
+    """Check median ratio, counts and p value of each contrast."""
     members = pd.read_parquet(folder / "members.parquet")
     wide = peaks(members, "member", "peak_tilt")
     bullets = re.findall(
@@ -121,7 +121,7 @@ def check_ensemble(folder: Path) -> None:
 
 
 def check_advice(folder: Path) -> None:
-    """Shares that overturn, with their intervals."""
+    """Check overturning shares with their intervals."""
     members = pd.read_parquet(folder / "members.parquet")
     text = (folder / "advice.md").read_text(encoding="utf-8")
     rows = re.findall(r"\| (\d+) of (\d+) \(([\d.]+) to ([\d.]+) %\) \|", text)
@@ -149,7 +149,7 @@ def median_of(counts: pd.DataFrame) -> float:
 
 
 def check_fragility() -> None:
-    """Ratios of the medians of overturning."""
+    """Check ratios of the medians of overturning."""
     counts = pd.read_parquet(PUBLISHED / "fragility" / "p695" / "counts.parquet")
     fell = counts[counts["limit"] == "overturned"]
     medians = {key: median_of(rows) for key, rows in fell.groupby(["cylinder", "method"])}
@@ -166,7 +166,7 @@ def check_fragility() -> None:
 
 
 def faults() -> list[str]:
-    """Return the headlines that their tables do not bear out."""
+    """Headlines that contradict their tables."""
     checks = [
         ("validity", check_validity),
         ("compare", check_comparison),

@@ -1,4 +1,4 @@
-"""Make what is published here again, every study by its command or its script, from one commit.
+"""Rebuild the published results, each study by its command or script, from one commit.
 
     python reports/published/remake.py               # all of it, some two hours on two cores
     python reports/published/remake.py tradeoff paper
@@ -122,7 +122,7 @@ _LINK = re.compile(rb'#([^")]+)[")]')
 
 
 def trim(folder: Path, *, only: tuple[str, ...] | None = None) -> None:
-    """Remove from the results in `folder` what is not kept; of a control all but `only`."""
+    """Remove files of `folder` that are not published; of a control study all but `only`."""
     for pattern in NOT_KEPT:
         for path in folder.glob(pattern):
             shutil.rmtree(path) if path.is_dir() else path.unlink()
@@ -142,7 +142,7 @@ def trim(folder: Path, *, only: tuple[str, ...] | None = None) -> None:
 
 
 def _drop(folder: Path, names: Sequence[str]) -> None:
-    """Remove files and what the manifest says of them."""
+    """Remove files and their manifest entries."""
     manifest = folder / MANIFEST
     stated = json.loads(manifest.read_text())
     for name in names:
@@ -152,7 +152,7 @@ def _drop(folder: Path, names: Sequence[str]) -> None:
 
 
 def compact_all() -> None:
-    """Write the figures that matplotlib has drawn in half their room."""
+    """Compact all figures drawn by matplotlib."""
     for path in HERE.rglob("*.svg"):
         drawn = path.read_bytes()
         if _DRAWN in drawn:
@@ -160,7 +160,7 @@ def compact_all() -> None:
 
 
 def compact(drawn: bytes) -> bytes:
-    """Return an SVG of matplotlib in half its room: styles once, short paths, only names that are used."""
+    """Matplotlib SVG in half the size: shared styles, short paths, only used names."""
     drawn = _NOTHING.sub(b"", _PATH.sub(_short, drawn)).replace(b"<use xlink:href", b"<use href")
     drawn = _PLACE.sub(lambda place: _LONG_NUMBER.sub(rb"\1", place[0]), drawn)
     repeated = [style for style, count in Counter(_STATED.findall(drawn)).items() if count > 2]
@@ -175,7 +175,7 @@ def compact(drawn: bytes) -> bytes:
 
 
 def _ungrouped(drawn: bytes) -> bytes:
-    """Return an SVG of one tag a line without the groups that say nothing of what is in them."""
+    """SVG with one tag per line, without groups that carry no attribute."""
     kept, bare = [], []
     for line in drawn.split(b"\n"):
         if line.startswith((b"<g>", b"<g ")) and not line.endswith(b"/>"):
@@ -186,7 +186,7 @@ def _ungrouped(drawn: bytes) -> bytes:
 
 
 def _short(path: re.Match[bytes]) -> bytes:
-    """Return a path of segments relative to their start, in tenths of a point: an eighth of a pixel."""
+    """Path with relative segments in tenths of a point, an eighth of a pixel."""
     segments, here, last = b"", (0, 0), b""
     for letter, numbers in _SEGMENT.findall(path[0]):
         tenths = [round(10.0 * float(number)) for number in numbers.split()]
@@ -220,7 +220,7 @@ def _commits_since(commit: str, folder: str) -> int:
 
 
 def manifests(place: Path = HERE) -> list[tuple[Path, Manifest]]:
-    """Return the folders of results below `place`, each with the manifest of every kind that it holds."""
+    """Folders of results below `place`, each with the manifest of every kind that it holds."""
     folders = sorted(path.parent for path in place.rglob(MANIFEST))
     return [(folder, each) for folder in folders for each in read_manifests(folder)]
 
@@ -230,7 +230,7 @@ def _is_whole(folder: Path, made: Manifest) -> bool:
 
 
 def faults(place: Path = HERE) -> list[str]:
-    """Damaged files below `place`, and statements of its pages that their tables do not bear out."""
+    """Damaged files below `place`, and page statements that contradict their tables."""
     rows = []
     for folder, made in manifests(place):
         name = f"{folder.relative_to(place).as_posix()} ({made.kind})"
@@ -256,7 +256,7 @@ def faults(place: Path = HERE) -> list[str]:
 
 
 def _today(folder: Path, made: Manifest) -> tuple[str, str] | None:
-    """Return the stored words of a page and those of today, or None where today's code cannot draw it."""
+    """Stored page and the page drawn today as text, or None if it cannot be drawn."""
     if not _is_whole(folder, made):
         return None
     try:
@@ -267,7 +267,7 @@ def _today(folder: Path, made: Manifest) -> tuple[str, str] | None:
 
 
 def _page_faults(folder: Path, made: Manifest) -> list[str]:
-    """Statements of a page that its tables do not bear out, by the script of the study where it has one."""
+    """Page statements that contradict their tables, by the script of the study if it has one."""
     if made.kind not in KINDS:
         if not (folder / "make.py").exists():
             return ["no command and no make.py draws such results"]
@@ -283,7 +283,7 @@ def _page_faults(folder: Path, made: Manifest) -> list[str]:
 
 
 def ages(place: Path = HERE) -> list[str]:
-    """Results older than the code: no fault, `remake.py NAME` makes them again."""
+    """Results older than the code: no fault; `remake.py NAME` rebuilds them."""
     current, rows = code_digests(), []
     for folder, made in manifests(place):
         name = f"{folder.relative_to(place).as_posix()} ({made.kind})"
@@ -299,7 +299,7 @@ def ages(place: Path = HERE) -> list[str]:
 
 
 def check() -> int:
-    """Print what is older than the code and what is wrong; return 1 where something is wrong."""
+    """Print outdated and faulty results; return 1 with faults."""
     for row in ages():
         print(row)
     wrong = [*faults(), *headlines.faults()]
@@ -310,7 +310,7 @@ def check() -> int:
 
 
 def redraw() -> None:
-    """Draw the pages again of what has all its tables."""
+    """Redraw the pages of results with complete tables."""
     for folder, made in manifests():
         if all(file_state(folder, made, name) == "whole" for name in made.files):
             script = folder / "make.py"
@@ -323,7 +323,7 @@ def redraw() -> None:
 
 
 def archive(path: Path) -> None:
-    """Pack the benchmark with the modules that its programs take from the project."""
+    """Pack the benchmark with the project modules that its programs import."""
     root, benchmark = HERE.parents[1], HERE / "benchmark"
     files = {path.relative_to(HERE): path for path in benchmark.rglob("*") if "__pycache__" not in path.parts}
     files |= {Path("benchmark/external") / name: root / "compare/external" / name for name in _EXTERNAL}
@@ -334,7 +334,7 @@ def archive(path: Path) -> None:
 
 
 def main() -> int:
-    """Run the commands of the studies that are named, or of all."""
+    """Run the commands of the named studies, or of all."""
     if "--archive" in sys.argv:
         archive(Path(sys.argv[-1]))
         return 0

@@ -1,4 +1,4 @@
-"""What the scripts `NAME/make.py` of this folder share: to measure, to draw again, and to check.
+"""Common main program of the scripts `NAME/make.py`: measure, redraw, check.
 
 python reports/published/NAME/make.py            # measure, and write tables, page and figures
 python reports/published/NAME/make.py --redraw   # draw page and figures of the stored tables again
@@ -25,7 +25,7 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 def not_borne_out(stored: str, today: str) -> list[str]:
-    """Numbers on a stored page that the page of today does not have."""
+    """Numbers on a stored page that are missing from the page drawn today."""
     kept, drawn = (Counter(_NUMBER.findall(each)) for each in (stored, today))
     return sorted(kept.keys() - drawn.keys())
 
@@ -39,7 +39,7 @@ def run(
     options: Callable[[argparse.ArgumentParser], object] = lambda _: None,
     claims: Callable[[Found], Sequence[str]] = lambda _: (),
 ) -> int:
-    """Do what the command line of a script asks for; return the exit code.
+    """Run the command line of a script; return the exit code.
 
     Parameters
     ----------

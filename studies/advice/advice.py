@@ -1,4 +1,4 @@
-"""Advice on one case before its results are used: all of its runs, and the numbers that they come to."""
+"""Advice on one case: all of its runs, their tables and facts."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vertical:
-    """Knowledge of the vertical component of the ground motion.
+    """Vertical component of the ground motion: where it comes from and what it changes.
 
     Attributes
     ----------
@@ -146,13 +146,13 @@ class Advice(Results, kind=KIND):
     --------
     >>> import rockwobble as rw
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    >>> found = rw.advise(rw.Case(pier, rw.el_centro_1940()), copies=20)
-    >>> found.trust.kind, found.grades["overturning"]
+    >>> advice = rw.advise(rw.Case(pier, rw.el_centro_1940()), copies=20)
+    >>> advice.trust.kind, advice.grades["overturning"]
     ('statistics', 'caution')
     """
 
     def headline(self) -> dict[str, Number]:
-        """Outcome, grade, the shares that overturn, and the largest tilt as given; how far a slide goes."""
+        """Outcome, grade, overturning shares and peak tilt as given; for a slide its displacement."""
         response = self.response
         about = {"case": self.facts["case"], "outcome as given": response["outcome"]}
         if self.slides:
@@ -187,14 +187,14 @@ class Advice(Results, kind=KIND):
 
     @property
     def trust(self) -> Trust:
-        """Time until which the trace can be trusted."""
+        """Time until which the trace can be trusted, with its reason."""
         return Trust(**self.facts["trust"])
 
     @property
     def verification(self) -> Verification | None:
-        """The run of the engine."""
-        found = self.facts["verification"]
-        return None if found is None else Verification(**found)
+        """Run of the engine that verifies the model."""
+        stored = self.facts["verification"]
+        return None if stored is None else Verification(**stored)
 
     @property
     def moves(self) -> bool:
@@ -203,12 +203,12 @@ class Advice(Results, kind=KIND):
 
     @property
     def slides(self) -> bool:
-        """Whether it slides on flat ground and does nothing else."""
+        """Whether the cylinder only slides on flat ground."""
         return len(self.tables.get("slides", ())) > 0
 
     @property
     def slides_at_rest(self) -> bool:
-        """Whether the friction given does not keep a base in its place that stays closed."""
+        """Whether the given friction lets the closed base slide."""
         motion, friction = self.facts["motion"], self.facts["friction"]
         known = motion is not None and friction is not None and self.response["outcome"] not in NO_PEAK
         if self.moves or self.slides or not known:
@@ -218,22 +218,22 @@ class Advice(Results, kind=KIND):
 
     @property
     def overturned(self) -> bool:
-        """Whether it overturns as given; nobody knows where its tendon yields before."""
+        """Whether the case overturns as given; unknown once its tendon yields."""
         return self.response["outcome"] == "overturned" and not self.yields
 
     @property
     def yields(self) -> bool:
-        """Whether the tendon yields as given, so that the run is no answer."""
+        """Whether the tendon yields as given, which leaves the run without a result."""
         return bool(self.response.get("yields", False))  # unknown for results of earlier versions
 
     @property
     def yielded(self) -> int:
-        """Number of runs of the groups that grades rest on whose tendon yields."""
+        """Number of runs with a yielding tendon in the groups that count for grades."""
         return int(self.counting["yielded"].sum()) if "yielded" in self.counting else 0
 
     @property
     def yields_from(self) -> float:
-        """Lowest scale of the ground motion at which the tendon yields; NaN where it does at none."""
+        """Lowest scale of the ground motion at which the tendon yields; NaN if none."""
         spatial = self.scales[self.scales["series"] == SPATIAL]
         tables = (table for table in (spatial, self.as_strong) if "yields" in table)
         factors = (table["factor"][table["yields"].astype(bool)].min() for table in tables)
@@ -241,12 +241,12 @@ class Advice(Results, kind=KIND):
 
     @property
     def copies_differ(self) -> bool:
-        """Whether perturbing the case changes it."""
+        """Whether perturbed copies differ from the case."""
         return _differ(self.groups)
 
     @property
     def divergence_time(self) -> float:
-        """Time from which on copies are spread over half of the peak tilt [s]; inf where they never are."""
+        """Time at which the spread of the copies exceeds half of the peak tilt [s]; inf if never."""
         return spread_from(self.band, self.peak)
 
     @property
@@ -255,7 +255,7 @@ class Advice(Results, kind=KIND):
         return float(self.response["peak_tilt"])
 
     def top(self, tilt: float) -> float:
-        """Return the displacement of the top at a tilt [alpha], infinite where it overturns [m]."""
+        """Displacement of the top at a tilt [alpha], infinite where it overturns [m]."""
         return float(top_displacement(self.cylinder, tilt * self.cylinder.alpha))
 
     @property
@@ -268,7 +268,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def overturning_as_strong(self) -> tuple[float, float]:
-        """Lowest factor of shaking as strong at which it overturns, and the share of the range that does.
+        """Lowest overturning scale within equally strong shaking, and the share of that range that overturns.
 
         The share is of the logarithm of the factor, each scale standing for what is nearer to it than to
         another: counts would say too much, since most scales are run about the largest tilts.
@@ -282,7 +282,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def range_as_strong(self) -> tuple[float, float]:
-        """Least and largest peak tilt [alpha] under shaking as strong as that given; infinite: overturned."""
+        """Least and largest peak tilt [alpha] under equally strong shaking; infinite: overturned."""
         if not len(self.as_strong):
             return math.nan, math.nan
         tilts = self.as_strong["peak_tilt"].to_numpy(float)
@@ -291,17 +291,17 @@ class Advice(Results, kind=KIND):
 
     @property
     def counting(self) -> pd.DataFrame:
-        """The groups that grades rest on."""
+        """Groups of runs that count for grades."""
         return self.groups[self.groups["counts"]] if len(self.groups) else self.groups
 
     @property
     def vertical(self) -> Vertical:
-        """The part of the vertical component."""
+        """Facts of the vertical component."""
         return Vertical(**self.facts["vertical"])
 
     @property
     def missing(self) -> tuple[float, float]:
-        """Shares of the moving time in which friction and contact are missing.
+        """Shares of the time in motion with insufficient friction and with lost contact.
 
         Those that 95 % of the runs of each group do not exceed or, where too few differ, those as given.
         """
@@ -312,7 +312,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def grades(self) -> dict[str, Grade]:
-        """Grade of each topic that there is something to say about; the criteria are in `grades`."""
+        """Grade of each topic that was run, by the criteria of `grades`."""
         return {each.key.partition(".")[0]: cast("Grade", each.level) for each in graded(self)}
 
     def findings(self) -> Findings:
@@ -334,7 +334,7 @@ def advise(
     friction_given: bool = True,
     progress: ProgressCallback | None = None,
 ) -> Advice:
-    """Run what it takes to say how far the results of one case can be trusted.
+    """Run one case by models, copies and other records, and grade how far its results can be trusted.
 
     Parameters
     ----------
@@ -375,8 +375,8 @@ def advise(
     >>> import rockwobble as rw
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
-    >>> found = rw.advise(rw.Case(pier, initial=release, duration=4.0), copies=20)
-    >>> found.trust.kind, found.grades["engine"]
+    >>> advice = rw.advise(rw.Case(pier, initial=release, duration=4.0), copies=20)
+    >>> advice.trust.kind, advice.grades["engine"]
     ('trace', 'not tested')
     """
     plan = AdvicePlan(
@@ -513,7 +513,7 @@ def advise(
 
 
 def require_judged(case: Case, support: str, gap: float | None) -> None:
-    """Refuse a case that no advice judges.
+    """Refuse a case that the advice cannot judge.
 
     Raises
     ------
@@ -552,18 +552,18 @@ def _restraint(case: Case) -> dict[str, object] | None:
 
 
 def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, object]) -> Advice:
-    """Return the advice of its runs, with the tables that are concluded from them."""
-    found = Advice(tables=tables, facts=plain(facts))
-    counting = found.members[~found.members["group"].isin(BESIDE_THE_PROBLEM)]
+    """Advice from the runs of a case, with the tables concluded from them."""
+    advice = Advice(tables=tables, facts=plain(facts))
+    counting = advice.members[~advice.members["group"].isin(BESIDE_THE_PROBLEM)]
     demands = demand_table(
-        pd.concat([counting, found.weaker]) if len(found.weaker) else counting,
-        found.cylinder,
-        gravity=found.facts["gravity"],
-        support=found.facts["support"],
-        mass=found.facts["mass"],
+        pd.concat([counting, advice.weaker]) if len(advice.weaker) else counting,
+        advice.cylinder,
+        gravity=advice.facts["gravity"],
+        support=advice.facts["support"],
+        mass=advice.facts["mass"],
     )
     return dataclasses.replace(
-        found, tables={**tables, "groups": group_table(found.members), "demands": demands}
+        advice, tables={**tables, "groups": group_table(advice.members), "demands": demands}
     )
 
 
@@ -659,8 +659,8 @@ def vertical_effect(
         shaken = dataclasses.replace(case, motion=each, duration=duration)
         copies = plan.perturbed(shaken, VERTICAL_COUNT)
         runs[name] = [simulate_run(copy, model, sample_step=DEMAND_STEP) for copy in copies]
-    found = pairs_of(*runs.values()).contrast()
-    ratios = None if found is None or not found.compared else ratios_of(found)
+    contrast = pairs_of(*runs.values()).contrast()
+    ratios = None if contrast is None or not contrast.compared else ratios_of(contrast)
     kept = {"own": HORIZONTAL, "shipped": VERTICAL}.get(source, "")
     return dataclasses.replace(about, ratios=ratios), {
         name: traces for name, traces in runs.items() if name == kept

@@ -1,4 +1,4 @@
-"""Demands on ground, recess and slab: of one run, of a group of runs, and of shaking up to an intensity.
+"""Demands on ground, recess and slab: of one run, of a group of runs, and up to an intensity.
 
 A demand of a run is what it does not exceed in 99 % of its time in motion; where the run overturns, of the
 motion up to overturning. A demand of a group is what 95 % of its runs do not exceed, the order statistic of
@@ -62,7 +62,7 @@ _NOT_PLANE = "all runs stay in one plane, in which no moment arises: a real moti
 
 
 def overturning_time(trace: Trace) -> float:
-    """Time at which an overturning run last passes its balance [s]; inf where none does.
+    """Time at which an overturning run last passes its balance tilt [s]; inf if it stands.
 
     A fall asks nothing.
     """
@@ -73,7 +73,7 @@ def overturning_time(trace: Trace) -> float:
 
 
 def demands_of(trace: Trace) -> dict[str, float]:
-    """Return the demands of a run on ground, recess and slab, until it last passes its balance if it falls.
+    """Demands of a run on ground, recess and slab, up to its overturning time.
 
     Samples at which the base is closed, see `Trace.open_base`, ask nothing.
 
@@ -135,7 +135,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
 
 
 def weaker_factors(threshold: float) -> list[float]:
-    """Return the factors below 1 on a record at which demands are also evaluated.
+    """Factors below 1 on a record at which demands are also evaluated.
 
     They are a fixed series of intensities in steps of `LEVEL_RATIO`, so that those of stronger shaking by the
     same record contain those of weaker: its demands do not fall. The threshold of uplift, at which models
@@ -161,7 +161,7 @@ def weaker_factors(threshold: float) -> list[float]:
 def demand_table(
     members: pd.DataFrame, cylinder: RockingBody, *, gravity: float, support: str, mass: float | None = None
 ) -> pd.DataFrame:
-    """Return the design demands on ground, recess and slab: the largest of all groups and intensities.
+    """Design demands on ground, recess and slab: the largest of all groups and intensities.
 
     Parameters
     ----------
@@ -245,7 +245,7 @@ _COLUMNS = [
 
 
 def _groups(members: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame]]:
-    """Groups of runs that may be stated, at each intensity: of fewer than `FEWEST` that differ none is."""
+    """Groups with enough runs to state a demand, at each intensity: `FEWEST` unless all runs are equal."""
     if not len(members):
         return
     for (group, _), runs in members.groupby(["group", "factor"], sort=False):
@@ -258,13 +258,13 @@ def _groups(members: pd.DataFrame) -> Iterator[tuple[str, float, pd.DataFrame]]:
 
 
 def all_alike(runs: pd.DataFrame) -> bool:
-    """Whether all runs that move are the same run, as where most records are too weak to uplift."""
+    """Whether all moving runs of a group are equal, as when most records are too weak for uplift."""
     numbers = [name for name in ("peak_tilt", *UNITS) if name in runs.columns]
     return len(runs) > 1 and runs["peak_tilt"].min() > 0.0 and bool(runs[numbers].nunique().max() == 1)
 
 
 def _most(groups: list[tuple[str, float, pd.DataFrame]], what: str) -> dict[str, Any] | None:
-    """The group of which most yield or overturn, where that is more than a demand leaves out."""
+    """Group in which more runs yield or overturn than a demand may leave out."""
     worst: dict[str, Any] | None = None
     share = 1.0 - COVERED
     for group, factor, runs in groups:
@@ -276,7 +276,7 @@ def _most(groups: list[tuple[str, float, pd.DataFrame]], what: str) -> dict[str,
 
 
 def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[str, Any]:
-    """The largest demand of a name of all groups, and of which."""
+    """Largest value of a demand over all groups, with its group."""
     best: dict[str, Any] = {"value": math.nan, "reason": f"fewer than {FEWEST} runs differ"}
     for group, factor, runs in groups:
         value, covered = covering(runs[name].to_numpy(float), COVERED)
@@ -293,7 +293,7 @@ def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[s
 def _together(
     name: str, groups: list[tuple[str, float, pd.DataFrame]], limits: Mapping[str, float]
 ) -> dict[str, float]:
-    """Actions at the time of the largest shear or moment of a run, while nothing is beyond its limit."""
+    """Simultaneous actions at the time of the largest shear or moment of a run, if none exceeds its limit."""
     runs = pd.concat([each for *_, each in groups])
     load = pd.DataFrame({part: runs[f"{name}_with_{part}"].astype(float) for part in _TOGETHER})
     acting = {part: load[part] for part in _TOGETHER}

@@ -52,7 +52,7 @@ def _note(key: str, **values: Value) -> Finding:
 
 
 def _verdict(advice: Advice) -> Iterator[Finding]:
-    """Verdict on the body, and on the use of the model whatever becomes of the body."""
+    """Verdict on the body, and on whether the model may be used."""
     model, outcome, grades = advice.facts["model"], advice.response["outcome"], dict(advice.grades)
     level = grades.pop("overturning", "not tested")
     keys = {
@@ -74,7 +74,7 @@ def _verdict(advice: Advice) -> Iterator[Finding]:
 
 
 def _motion(advice: Advice) -> Iterator[Finding]:
-    """Motion, vertical component, why nothing moves, limit of a tendon; what a case asks of its builder."""
+    """Mode of motion, vertical component, reason for rest, limit of the tendon, and builder's tasks."""
     yield from _mode(advice)
     yield from _vertical(advice)
     if not advice.moves and not advice.slides:
@@ -99,7 +99,7 @@ def _mode(advice: Advice) -> Iterator[Finding]:
 
 
 def _vertical(advice: Advice) -> Iterator[Finding]:
-    """Copies with the vertical component beside those without: a caution where the grade is another."""
+    """Copies with and without the vertical component; a caution where the grades differ."""
     vertical, ratios = advice.vertical, advice.vertical.ratios
     if vertical.source == "other":
         yield _note("vertical.not_given")
@@ -120,7 +120,7 @@ def _vertical(advice: Advice) -> Iterator[Finding]:
 
 
 def _at_rest(advice: Advice) -> Finding:
-    """Why a case does not move, or what it would take."""
+    """Reason why a case stays at rest, and the scale that would move it."""
     motion, vertical = advice.facts["motion"], advice.vertical
     if codes := advice.response["diagnostics"]:
         return _note("rest.diagnosed", names=tuple(codes))
@@ -137,7 +137,7 @@ def _at_rest(advice: Advice) -> Finding:
 
 
 def _limit_of_tendon(advice: Advice) -> Iterator[Finding]:
-    """Up to where the tendon is what the models take it for."""
+    """Range in which the tendon stays elastic."""
     tendon, alpha = advice.facts.get("tendon"), advice.cylinder.alpha
     if tendon is not None and tendon["yield_force"] is None:
         of = "prestress" if tendon["prestress"] else "weight_of_column"
@@ -150,7 +150,7 @@ def _limit_of_tendon(advice: Advice) -> Iterator[Finding]:
 
 
 def _groups(advice: Advice) -> Iterator[Finding]:
-    """Each group of runs; what they are compared with, beside copies."""
+    """Each group of runs; groups other than copies with their comparison."""
     # an earlier version counted none that yields
     rows = {str(row["group"]): {"yielded": 0} | row for row in advice.groups.to_dict("records")}
     for group, row in rows.items():
@@ -186,7 +186,7 @@ def _groups(advice: Advice) -> Iterator[Finding]:
 
 
 def covering_values(advice: Advice, row: Mapping[Any, Any]) -> dict[str, Value]:
-    """Number and group of the runs whose demand is covered, and their shaking."""
+    """Count and group of the runs whose demand is covered, with their shaking."""
     return {
         "count": int(row["covered"]),
         "runs": int(row["runs"]),
@@ -196,7 +196,7 @@ def covering_values(advice: Advice, row: Mapping[Any, Any]) -> dict[str, Value]:
 
 
 def _demands(advice: Advice) -> Iterator[Finding]:
-    """Each design demand, what acts together, and the wall."""
+    """Each design demand, its simultaneous actions, and the wall."""
     if not advice.moves:
         return
     rows = {str(row["demand"]): row for row in advice.demands.to_dict("records")}
@@ -247,7 +247,7 @@ def _demands(advice: Advice) -> Iterator[Finding]:
 
 
 def _without(advice: Advice, row: Mapping[Any, Any], group: str, **about: Value) -> Finding:
-    """Reason and group of a demand without a value."""
+    """Reason for a missing demand, with its group."""
     reason = row["reason"] if row["reason"] in ("yields", "overturns") else "other"
     about |= {"detail": row["reason"]} if reason == "other" else covering_values(advice, row)
     return Finding(key=f"{group}none_{reason}", level="not tested", values=about)
@@ -279,7 +279,7 @@ def _steps(advice: Advice) -> Iterator[Finding]:
 
 
 def _checks(advice: Advice) -> Iterator[Finding]:
-    """Findings of the evidence for the grades."""
+    """Findings on the evidence for the grades."""
     if not advice.moves:
         return
     response, copies = advice.response, advice.members
@@ -308,7 +308,7 @@ def _checks(advice: Advice) -> Iterator[Finding]:
 
 
 def _agreement(advice: Advice) -> Iterator[Finding]:
-    """Time until which the trace can be trusted, its prediction, and the run of an engine."""
+    """Time until which the trace can be trusted, its prediction, and the engine run."""
     trust, engine, ran = advice.trust, advice.verification, has_run(advice)
     ends = {"methods": "methods_diverge" if ran else "methods_predicted", "data": "copies_spread"}
     whole = trust.kind == "trace"
@@ -336,7 +336,7 @@ def _agreement(advice: Advice) -> Iterator[Finding]:
 
 
 def _scales(advice: Advice) -> Iterator[Finding]:
-    """Largest tilts under shaking as strong, and the lowest scales that overturn."""
+    """Peak tilts under equally strong shaking, and the lowest overturning scales."""
     low, high = advice.range_as_strong
     if not math.isnan(low) and not advice.overturned and advice.grades["intensity"] != "not tested":
         count = len(advice.as_strong)
@@ -359,7 +359,7 @@ def _scales(advice: Advice) -> Iterator[Finding]:
 
 
 def _ratio(name: str, ratios: Mapping[str, float] | None, record: str | None) -> Iterator[Finding]:
-    """Largest tilts of copies by one of two ways over those by the other."""
+    """Ratio of the peak tilts of copies by two methods."""
     if ratios is None:
         return
     fell = int(ratios["overturned"]), int(ratios["against_overturned"])

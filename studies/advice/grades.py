@@ -1,4 +1,4 @@
-"""Grades of an advice: each topic by the first of its criteria that holds, with key, level and values.
+"""Grades of an advice: each topic gets the level of its first satisfied criterion.
 
 A grade rests on what was run: "not tested" is the grade of what nothing was run for.
 """
@@ -50,25 +50,25 @@ _CRITERIA: Mapping[str, Mapping[str, Value]] = {
 
 
 def criterion(topic: str, grade: Grade) -> Finding:
-    """Criterion for a grade of a topic."""
+    """One criterion: condition, key, level and values."""
     key = f"criterion.{topic}_{grade.replace(' ', '_')}"
     return Finding(key=key, level=grade, values=_CRITERIA.get(topic, {}))
 
 
 def overall(grades: Iterable[Grade]) -> Grade:
-    """Return the worst of some grades; "not tested" of none."""
+    """Worst of some grades; "not tested" of none."""
     return max(grades, key=GRADES.index, default="not tested")
 
 
 def grade_chance(chance: float) -> Grade:
-    """Return the grade of a share of runs that overturn; "not tested" of NaN."""
+    """Grade of the share of runs that overturn; "not tested" of NaN."""
     if math.isnan(chance):
         return "not tested"
     return "not satisfied" if chance > UNSAFE else "caution" if chance > 0.0 else "satisfied"
 
 
 def graded(advice: Advice) -> Iterator[Finding]:
-    """Grade of each topic that there is something to say about, with what it rests on in this case."""
+    """Grade of each topic that was run, with the values that decide it."""
     outcome, facts = advice.response["outcome"], advice.facts
     if outcome in NO_PEAK:
         yield Finding(key=f"trace.{outcome}", level="not satisfied")
@@ -92,12 +92,12 @@ def graded(advice: Advice) -> Iterator[Finding]:
 
 
 def group_name(advice: Advice, group: str) -> str:
-    """Name of a group of runs in the table of words; of other records with what they are."""
+    """Words-table name of a group of runs; for other records with their kind."""
     return f"{group}_{advice.facts['records']}" if group in (ACCELERATION, VELOCITY) else group
 
 
 def _overturning(advice: Advice) -> Iterator[Criterion]:
-    """Of the run as given, of the groups, and of other scales, which count where no tendon yields in them."""
+    """Criteria on overturning: the run as given, the groups, and other scales without tendon yield."""
     lowest, beyond, groups = advice.lowest_factor, advice.yields_from, advice.counting
     shaken, yielded = advice.facts["motion"] is not None, advice.yielded
     known = len(advice.lowest) > 0 if shaken else advice.copies_differ
@@ -137,7 +137,7 @@ def _friction(advice: Advice) -> Iterator[Criterion]:
 
 
 def _missing(advice: Advice, share: float, key: str, values: Mapping[str, Value]) -> Iterator[Criterion]:
-    """Of a share of the moving time without friction or contact, which 95 % of the runs do not exceed."""
+    """Criteria on a share of the time without friction or contact, exceeded by at most 5 % of the runs."""
     groups = advice.counting
     spread = not advice.yielded and bool((~groups["single"] & groups["lost_95"].notna()).any())
     yield share > BROKEN, key, "not satisfied", {**values, "share": share}
@@ -185,7 +185,7 @@ def _tendon(advice: Advice) -> Iterator[Criterion]:
 
 
 def _intensity(advice: Advice) -> Iterator[Criterion]:
-    """Of the largest tilt under shaking as strong; below that of an open base all tilts are the same."""
+    """Criteria on the peak tilt under equally strong shaking; tilts of a closed base count as equal."""
     if advice.facts["motion"] is None or advice.overturned:
         return
     (least, most), limit = advice.range_as_strong, SENSITIVE / BETWEEN_SCALES
@@ -202,7 +202,7 @@ def _intensity(advice: Advice) -> Iterator[Criterion]:
 
 
 def _engine(advice: Advice) -> Iterator[Criterion]:
-    """Of a run of an engine: a smaller difference than that of the copies, which may come before it."""
+    """Criteria on an engine run: it may diverge earlier than the copies if its difference is smaller."""
     engine = advice.verification
     if engine is None:
         yield True, "not_run", "not tested", {}
@@ -226,12 +226,12 @@ def _engine(advice: Advice) -> Iterator[Criterion]:
 
 
 def end_of_motion(advice: Advice) -> str:
-    """Reason of the time of the largest tilt: the fall, or the tilt itself."""
+    """Reason for the time of the peak tilt: overturning, or the maximum itself."""
     return "it_falls" if advice.overturned else "largest_tilt"
 
 
 def has_run(advice: Advice) -> bool:
-    """Whether an engine was run, to an end."""
+    """Whether an engine run exists and did not fail."""
     return advice.verification is not None and advice.verification.outcome not in NO_PEAK
 
 

@@ -1,4 +1,4 @@
-"""Many runs of one problem: copies of it, each a little different, and other records as strong as its own."""
+"""Many runs of one problem: perturbed copies, and other records of equal strength."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ DEMANDS = (*UNITS, *SHARES)
 
 
 def top_displacement(cylinder: RockingBody, tilt: ArrayLike) -> Array:
-    """Return the horizontal displacement of the top, over a circle of contact that stays [m].
+    """Horizontal displacement of the top while the contact circle stays in place [m].
 
     Of the centre of the top of a cylinder or, in a frame, of the slab: over it the rim of the top rolls as
     that of the base rolls over the ground.
@@ -82,12 +82,12 @@ def top_displacement(cylinder: RockingBody, tilt: ArrayLike) -> Array:
 
 
 def peak_velocity(motion: GroundMotion) -> float:
-    """Return the peak horizontal resultant of the ground velocity [m/s], of the record without its mean."""
+    """Peak horizontal resultant of the ground velocity [m/s], with the mean acceleration removed."""
     return intensity.largest_resultant(intensity.velocity(motion, centred=True))
 
 
 def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
-    """Return the case under other records, as strong as its own by peak acceleration and by peak velocity.
+    """The case under other records, scaled to its peak acceleration and to its peak velocity.
 
     Those of FEMA P-695 where they are installed, else synthetic ones; and "p695" or "synthetic". None for a
     release and without a ground motion.
@@ -102,13 +102,13 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
     velocity = peak_velocity(motion)
     as_fast = [each.scaled(velocity / peak_velocity(each)) for each in motions]
     return {
-        name: [dataclasses.replace(case, motion=each, duration=None, name=each.name) for each in found]
-        for name, found in ((ACCELERATION, motions), (VELOCITY, as_fast))
+        name: [dataclasses.replace(case, motion=each, duration=None, name=each.name) for each in scaled]
+        for name, scaled in ((ACCELERATION, motions), (VELOCITY, as_fast))
     }, source
 
 
 def member_row(trace: Trace, group: str, factor: float = 1.0) -> dict[str, float | str]:
-    """Return the row of a run.
+    """Table row of one run.
 
     group, member, factor [-], model, outcome, peak_tilt [alpha], yields, see `beyond_yield`, and demands.
     """
@@ -125,14 +125,14 @@ def member_row(trace: Trace, group: str, factor: float = 1.0) -> dict[str, float
 
 
 def member_rows(group: str, traces: Iterable[Trace]) -> list[dict[str, float | str]]:
-    """Return the rows of some runs, see `member_row`."""
+    """Table rows of some runs, see `member_row`."""
     return list(in_threads(partial(member_row, group=group), traces))
 
 
 def run_rows(
     group: str, cases: Sequence[Case], model: Run, factor: float = 1.0
 ) -> list[dict[str, float | str]]:
-    """Run cases of one group by a reduced model, with a factor on their ground motions; return their rows."""
+    """Rows of the cases of one group by a reduced model, with a factor on their ground motions."""
 
     def row(case: Case) -> dict[str, float | str]:
         motion = case.motion if case.motion is None or factor == 1.0 else case.motion.scaled(factor)
@@ -148,12 +148,12 @@ def run_rows(
 
 
 def tendon_uplift_factor(case: Case) -> float:
-    """Return the factor by which a tendon raises the threshold of uplift [-]."""
+    """Factor by which a tendon raises the uplift threshold [-]."""
     return 1.0 if case.tendon is None else case.tendon.uplift_factor(case.cylinder)
 
 
 def uplift_of(case: Case, motion: GroundMotion | None = None) -> float:
-    """Return the factor on the motion of a case, or on another, at which it uplifts [-]; inf: at none."""
+    """Uplift factor on the motion of a case, or on another motion [-]; inf if it never uplifts."""
     motion = motion or case.motion
     if motion is None:
         return math.inf
@@ -163,7 +163,7 @@ def uplift_of(case: Case, motion: GroundMotion | None = None) -> float:
 
 
 def with_vertical(motion: GroundMotion) -> GroundMotion | None:
-    """Return a ground motion with its vertical component: its own, or that of the record that is shipped.
+    """Ground motion with its vertical component, or else with that of the shipped record.
 
     None where it has none and is no scaled part of the shipped record from its start.
     """
@@ -184,14 +184,14 @@ def with_vertical(motion: GroundMotion) -> GroundMotion | None:
 
 
 def without_vertical(motion: GroundMotion) -> GroundMotion:
-    """Return the two horizontal components of a ground motion."""
+    """Two horizontal components of a ground motion."""
     if not motion.has_vertical:
         return motion
     return motion.with_samples(motion.acceleration[:, :2], "without the vertical component")
 
 
-def ratios_of(found: Contrast) -> dict[str, float]:
-    """Return statistics of the ratio of the largest tilts of copies by two methods.
+def ratios_of(contrast: Contrast) -> dict[str, float]:
+    """Statistics of the ratio of peak tilts of copies by two methods.
 
     Returns
     -------
@@ -200,22 +200,22 @@ def ratios_of(found: Contrast) -> dict[str, float]:
         with a ratio, higher and lower, those with one above and below 1; ratio, low and high, the median and
         its interval, ratio_05 and ratio_95: NaN where they may not be stated, see `stated`.
     """
-    names = {"ratio": found.ratio, "ratio_05": found.ratio_05, "ratio_95": found.ratio_95}
+    names = {"ratio": contrast.ratio, "ratio_05": contrast.ratio_05, "ratio_95": contrast.ratio_95}
     return {
-        "members": found.count,
-        "overturned": found.overturned,
-        "against_overturned": found.against_overturned,
-        "count": found.compared,
-        "higher": found.higher,
-        "lower": found.lower,
-        **{name: value_if_enough(each.value, found.compared, ratio=True) for name, each in names.items()},
-        "low": found.ratio.low,
-        "high": found.ratio.high,
+        "members": contrast.count,
+        "overturned": contrast.overturned,
+        "against_overturned": contrast.against_overturned,
+        "count": contrast.compared,
+        "higher": contrast.higher,
+        "lower": contrast.lower,
+        **{name: value_if_enough(each.value, contrast.compared, ratio=True) for name, each in names.items()},
+        "low": contrast.ratio.low,
+        "high": contrast.ratio.high,
     }
 
 
 def group_table(members: pd.DataFrame) -> pd.DataFrame:
-    """Return one row for each group of members but the other support: how many overturn, and percentiles.
+    """One row per group of members: overturning count and percentiles; without the other support.
 
     Columns: group, runs, failed, overturned; yielded, those of which no more is known than that their tendon
     yields, which do not count as overturned; single, whether all moved alike, which makes them one run;

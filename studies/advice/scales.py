@@ -48,7 +48,7 @@ _LOWEST = ["series", "factor", "confirmed", "start"]
 
 
 def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Run a case over scales of its ground motion; nothing where there is none to scale.
+    """Run a case over scales of its ground motion; empty for a free response.
 
     Returns
     -------
@@ -80,8 +80,8 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
             start = uplift_factor(motion, tan_alpha, gravity, plane=plane, until=case.length)
             start *= tendon_uplift_factor(case)
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=alpha, stands=stands)
-        found = run_searches([search], at)[0]
-        factor = float(np.fmin(found, lowest_on_grid(FACTORS, peaks[None])[0]))
+        searched = run_searches([search], at)[0]
+        factor = float(np.fmin(searched, lowest_on_grid(FACTORS, peaks[None])[0]))
         again = run(factor * np.array(CONFIRMING), rtol=CHECK_RTOL)
         lowest.append((name, factor, bool(overturned(again).all()), start))
         columns = {"series": name, "factor": FACTORS, "peak_tilt": peaks, "yields": beyond_yield(peaks, case)}
@@ -90,7 +90,7 @@ def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.Dat
 
 
 def scan_as_strong(case: Case, support: str, peak_tilt: float) -> pd.DataFrame:
-    """Run a case over shaking as strong as that given: factor [-], increasing, peak_tilt [rad] and yields.
+    """Run a case over equally strong shaking: factor [-], increasing, peak_tilt [rad] and yields.
 
     Scales evenly in the logarithm over `AS_STRONG`, then, `REFINEMENTS` times, between the largest of the
     tilts and their neighbours and between the least and theirs: tilts change fastest there. No row without
@@ -129,7 +129,7 @@ def planar_runs(cases: Sequence[Case], support: str = RECESS) -> pd.DataFrame:
 
 
 def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
-    """Return for each scale how often 3D tilts more than both planes, and overturns where neither does.
+    """Share of records at each scale where 3D tilts more than both planes, and overturns where neither does.
 
     Keys: scale; moving, records that uplift in any; larger and unconservative, counts of these, with
     the shares NAME_share and the ends of their intervals, NAME_low and NAME_high.
@@ -139,12 +139,12 @@ def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
         space, x, y = (group[name].to_numpy(float) for name in SERIES)
         planar = np.fmax(x, y)
         counts = np.isfinite(space) & np.isfinite(planar) & ((space > 0.0) | (planar > 0.0))
-        found = {
+        shares = {
             "larger": (space > LARGER * planar)[counts],
             "unconservative": (overturned(space) & ~overturned(planar))[counts],
         }
         row: dict[str, float] = {"scale": float(str(scale)), "moving": int(counts.sum())}
-        for name, which in found.items():
+        for name, which in shares.items():
             share = share_interval(int(which.sum()), len(which))
             row |= share.columns(name) | {name: int(which.sum()), f"{name}_share": share.value}
         rows.append(row)
@@ -152,7 +152,7 @@ def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
 
 
 def _peaks(case: Case, factors: Array, *, series: str, support: str, rtol: float = RTOL) -> Array:
-    """Peak tilts at factors on the motion of a case (n,) [rad]; NaN at a factor that is NaN."""
+    """Peak tilts of a case at factors on its motion (n,) [rad]; NaN stays NaN."""
     peaks = np.full(len(factors), math.nan)
     known = np.isfinite(factors)
     options = series_options(series, support)

@@ -1,4 +1,4 @@
-"""Slide of a case: how far, over its perturbed copies and over other records as strong."""
+"""Sliding displacement of a case, of its perturbed copies, and under other records of equal strength."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def slide_rows(groups: Mapping[str, Sequence[Case]], model: Run) -> pd.DataFrame
 
 
 def slides_and_rocks(case: Case, support: str, slip: float) -> bool:
-    """Whether a case may slide while it rocks, which no reduced model knows and an engine answers.
+    """Whether a case may slide while it rocks, which only an engine can simulate.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def engine_rows(cases: Sequence[Case], run: Run) -> pd.DataFrame:
 
 
 def engine_finding(rows: pd.DataFrame | None, engine: str, peak: float) -> Finding:
-    """Finding of an engine that can slide, beside the model's largest tilt without slip [alpha]."""
+    """Finding on an engine run that can slide, compared with the model's peak tilt without slip [alpha]."""
     if rows is None:
         return Finding(key="mode.no_engine", level="not tested")
     values: dict[str, Value] = {
@@ -74,7 +74,7 @@ def engine_finding(rows: pd.DataFrame | None, engine: str, peak: float) -> Findi
 def slide_findings(
     rows: pd.DataFrame, peak: float, residual: float, *, source: str, gap: float | None
 ) -> Iterator[Finding]:
-    """Findings on a slide: as given with the interval of its copies, each other group, and a gap [m].
+    """Findings on sliding: as given with the interval of its copies, each other group, and a gap [m].
 
     Parameters
     ----------
@@ -107,6 +107,6 @@ def slide_findings(
 
 
 def usual_support(case: Case, *, friction_given: bool) -> str:
-    """Support of an advice that names none: flat ground for what friction does not hold, else a recess."""
+    """Default support of an advice: flat ground if friction cannot hold the base, else a recess."""
     alone = case.tendon is None and case.cylinder.slab_mass_ratio == 0.0 and not case.is_release
     return FLAT if friction_given and alone and case.friction < case.friction_of_uplift else RECESS

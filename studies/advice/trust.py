@@ -1,4 +1,4 @@
-"""Time until which a trace can be trusted: until another method, or the same on data 1 % off, diverges."""
+"""Time until which a trace can be trusted: another method, or inputs perturbed by 1 %, diverge then."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Verification:
 
 
 def trust_of(methods_until: float, data_until: float, peak_time: float, end: float) -> Trust:
-    """Return the time until which a trace can be trusted, and what ends it.
+    """Trust in a trace, with the method or perturbation that limits it.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def trust_of(methods_until: float, data_until: float, peak_time: float, end: flo
 
 
 def band_of(case: Case, traces: Sequence[Trace]) -> pd.DataFrame:
-    """Return the tilts [alpha] that 5 % and 95 % of the copies do not exceed at each time [s]: low, high."""
+    """Tilts [alpha] not exceeded by 5 % and by 95 % of the copies at each time [s]: low, high."""
     time = np.arange(0.0, case.length, BAND_STEP)
     known = [trace for trace in traces if trace.outcome != "failed"]
     # one that overturned stays on its side
@@ -115,20 +115,20 @@ def band_of(case: Case, traces: Sequence[Trace]) -> pd.DataFrame:
 
 
 def spread_from(band: pd.DataFrame, peak: float) -> float:
-    """Return the time at which copies are spread over half of the peak tilt [s]; inf where they never are."""
+    """Time at which the spread of the copies exceeds half of the peak tilt [s]; inf if never."""
     wide = np.flatnonzero(band["high"] - band["low"] > LOST * min(peak, 1.0))
     return float(band["time"].iloc[wide[0]]) if len(wide) else math.inf
 
 
 def copies_divergence_time(case: Case, trace: Trace, copies: Sequence[Trace]) -> float:
-    """Return the time from which on copies are spread over half of the peak tilt of a run [s]; inf: never."""
+    """Divergence time of the copies of a run: spread over half of its peak tilt [s]; inf if never."""
     if trace.outcome in NO_PEAK:
         return math.inf
     return spread_from(band_of(case, copies), trace.peak_tilt / case.cylinder.alpha)
 
 
 def scatter_of(peak: float, copies: Iterable[float]) -> float:
-    """Half of the range of the largest tilts of 90 % of the copies, over that of the case; NaN of none."""
+    """Half the 90 % range of the copies' peak tilts over the peak of the case; NaN without copies."""
     known = [tilt for tilt in copies if math.isfinite(tilt)]
     if not known or not peak > 0.0:
         return math.nan
@@ -137,7 +137,7 @@ def scatter_of(peak: float, copies: Iterable[float]) -> float:
 
 
 def with_time_to_fall(case: Case, trace: Trace) -> Case:
-    """Return a case that takes until the fall of its run, after what was asked for, over still ground.
+    """Case extended over still ground to the end of the overturning of its run.
 
     All that is run for it then sees the fall: the engine, the copies, and when two methods diverge. A case
     whose run ends in time is the same.
@@ -175,7 +175,7 @@ def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
 
 
 def trusted_part(case: Case, trace: Trace, until: float) -> tuple[Case, Trace]:
-    """Return a case to where its copies have diverged [s], and its run: an engine beyond tests no more.
+    """Case cut at the divergence time of its copies [s], with its run; later motion tests no engine.
 
     A run that overturns is whole.
     """
@@ -186,7 +186,7 @@ def trusted_part(case: Case, trace: Trace, until: float) -> tuple[Case, Trace]:
 
 
 def verify_run(case: Case, run: Run, reference: Trace) -> tuple[Verification, Prediction, Trace]:
-    """Run an engine and compare it with a reduced model; what it resolved makes the prediction sharper.
+    """Run an engine and compare it with a reduced model; its resolved passes sharpen the prediction.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Fragility: probability that a demand exceeds a limit, given an intensity of shaking, by several methods."""
+"""Fragility: probability of exceeding a limit, given an intensity, by several methods."""

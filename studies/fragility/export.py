@@ -68,12 +68,12 @@ class Limit:
 
     @property
     def fitted(self) -> bool:
-        """Whether it has a lognormal curve."""
+        """Whether the limit state has a lognormal curve."""
         return math.isfinite(self.median)
 
 
 def limits_by_function(results: Fragility) -> Iterator[tuple[str, list[Limit]]]:
-    """Yield name and limit states of each body and method.
+    """Yield the name and limit states of each body and method.
 
     Raises
     ------
@@ -118,7 +118,7 @@ EXPORTS = {"nrml": "fragility.nrml.xml", "pelicun": "fragility.pelicun.csv"}
 
 
 def exported(results: Fragility, form: str) -> tuple[str, bytes]:
-    """Return the name and the content of the file of a format of `EXPORTS`.
+    """File name and content of an export format of `EXPORTS`.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def exported(results: Fragility, form: str) -> tuple[str, bytes]:
 
 
 def nrml(results: Fragility) -> bytes:
-    """Return the fragility model of OpenQuake, NRML 0.5: continuous where all limit states are fitted."""
+    """NRML 0.5 fragility model of OpenQuake: continuous if all limit states have a fit."""
     imt, words = _TYPES[str(results.facts["measure"])]
     factor, unit = (100.0, "cm/s") if imt == "PGV" else (1.0, "g")
     root = Tree.Element("nrml", xmlns="http://openquake.org/xmlns/nrml/0.5")

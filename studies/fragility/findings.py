@@ -70,7 +70,7 @@ def fragility_findings(
 
 
 def _problem(facts: Facts) -> Iterator[Finding]:
-    """Findings on the bodies, which motion friction lets them make, and the intensities."""
+    """Findings on the bodies, the mode that friction allows, and the intensities."""
     methods, given, several = facts["methods"].values(), float(facts["friction"]), len(facts["cylinders"]) > 1
     flat = any(each["support"] == str(FLAT) for each in methods)
     for name, body in facts["cylinders"].items():
@@ -100,7 +100,7 @@ def _problem(facts: Facts) -> Iterator[Finding]:
 def _medians(
     fallen: Sequence[Row], unit: str, several: bool, bound_of: Callable[[str, float], float | str]
 ) -> Iterator[Finding]:
-    """Findings on each median of overturning, or on what bounds it."""
+    """Findings on each median of overturning, or on its bound."""
     for row in fallen:
         kind = row["kind"]
         values: dict[str, Value] = {"name": _method(row, several), "detail_unit": unit}
@@ -116,7 +116,7 @@ def _medians(
 
 
 def _pair(row: Row, question: str, margin: float) -> Finding:
-    """Finding on the ratio of two medians: within the margin or not, and what failed runs leave open."""
+    """Finding on the ratio of two medians: within the margin or not, and the effect of failed runs."""
     values: dict[str, Value] = {"name": row["method"], "name_reference": row["against"], "reason": question}
     if not math.isfinite(row["ratio"]) or not row["ratio"]:
         return Finding(key="fragility.no_ratio", level="not tested", values=values, runs=row["cylinder"])
@@ -130,7 +130,7 @@ def _pair(row: Row, question: str, margin: float) -> Finding:
 
 
 def _curveless(fits: Iterable[Row], several: bool) -> Iterator[Finding]:
-    """Findings on each reason for no curve, with the limits and methods that have none for it."""
+    """Findings on each reason for a missing curve, with its limits and methods."""
     for kind in (ONE_MOTION, SEPARATED, FALLING):
         methods: dict[str, list[str]] = {}
         for row in fits:

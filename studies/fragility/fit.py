@@ -64,7 +64,7 @@ class Curves:
     kinds: NDArray[np.int64]
 
     def at(self, x: Array) -> Array:
-        """Return the probabilities (B, n) at logarithms of intensities (n,); NaN where there is no curve."""
+        """Probabilities (B, n) at logarithms of intensities (n,); NaN where there is no curve."""
         from scipy.special import ndtr
 
         spread = np.where(np.isfinite(self.centre), self.dispersion, 1.0)
@@ -118,7 +118,7 @@ def fit_curves(x: Array, n: Array, k: Array) -> Curves:
 def _between(
     x: Array, n: Array, k: Array, highest_miss: Array, lowest_hit: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the median (B,) of counts without a curve, and between which logarithms of intensities it lies.
+    """Median (B,) of counts without a curve, with its lower and upper bound as logarithms of intensities.
 
     One level may have runs of both kinds: where more than half of them exceed the limit the median is no
     higher, where fewer do no lower, and how far from it nobody knows but by the levels beside it.
@@ -136,7 +136,7 @@ def _between(
 
 
 def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> dict[str, float]:
-    """Compare the shares with a curve that was fitted to them; many intensities are put into groups.
+    """Goodness of fit of a curve to the observed shares; many intensities are grouped.
 
     Returns
     -------
@@ -165,7 +165,7 @@ def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> 
 
 
 def _newton(u: Array, n: Array, k: Array) -> tuple[Array, Array]:
-    """Return intercept and slope (B,) on the scale of u (K,), where there is a maximum."""
+    """Intercept and slope (B,) in the variable u (K,), where the likelihood has a maximum."""
     from scipy.special import ndtri
 
     share = np.clip(k.sum(axis=1) / n.sum(axis=1), 1e-3, 1.0 - 1e-3)
@@ -201,7 +201,7 @@ def _value(u: Array, n: Array, k: Array, a: Array, b: Array) -> Array:
 
 
 def _step(u: Array, n: Array, k: Array, a: Array, b: Array) -> tuple[Array, Array]:
-    """Newton's step: the inverse of the observed information times the score."""
+    """Newton step: inverse observed information times the score."""
     from scipy.special import log_ndtr
 
     eta = a[:, None] + b[:, None] * u
@@ -230,7 +230,7 @@ _MOST_NUMBERS = 2_000_000
 
 
 def resamples(motions: int, count: int, seed: int, *, strata: NDArray[np.int64] | None = None) -> Array:
-    """Number of times each motion is drawn (count, motions); strata (motions,) keep their sizes."""
+    """Bootstrap multiplicities of the motions (count, motions); strata (motions,) keep their sizes."""
     rng = np.random.default_rng(seed)
     weights = np.empty((count, motions))
     strata = np.zeros(motions, dtype=np.int64) if strata is None else strata
@@ -243,7 +243,7 @@ def resamples(motions: int, count: int, seed: int, *, strata: NDArray[np.int64] 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sample:
-    """The runs of one cylinder by one method, and whether they exceed one limit.
+    """Runs of one cylinder by one method, and whether they exceed one limit.
 
     Attributes
     ----------
@@ -257,7 +257,7 @@ class Sample:
     y: Array
 
     def counts(self, weights: Array | None = None) -> tuple[Array, Array, Array]:
-        """Return the intensities (K,) and, for each set of weights (B, R), runs and exceedances (B, K)."""
+        """Intensities (K,) and, for each set of weights (B, R), runs and exceedances (B, K)."""
         weights = np.ones((1, len(self.y))) if weights is None else weights
         known = (~np.isnan(self.y)).astype(np.float64)
         over = np.where(known > 0.0, self.y, 0.0)
@@ -269,7 +269,7 @@ class Sample:
         return self.x.ravel()[there], n, n * over.ravel()[there]
 
     def curves(self, weights: Array | None = None) -> Curves:
-        """Return the curve of each set of weights (B, R); without weights that of the motions as they are.
+        """Curve of each set of weights (B, R); without weights the curve of all motions once.
 
         Where the median of the motions as they are is only bounded, so is that of every resample.
         """
@@ -282,22 +282,22 @@ class Sample:
             else [fit_curves(*self.counts(weights[i : i + size])) for i in range(0, len(weights), size)]
         )
         names = [each.name for each in fields(Curves)]
-        found = Curves(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+        curves = Curves(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
         if not side:
-            return found
+            return curves
         edge = float(self.x.max() if side > 0.0 else self.x.min())
         beyond = math.copysign(math.inf, side)
         low, high = sorted((edge, beyond))
         if weights is not None:
-            return replace(found, low=np.minimum(found.low, low), high=np.maximum(found.high, high))
+            return replace(curves, low=np.minimum(curves.low, low), high=np.maximum(curves.high, high))
         bounds = {"median": beyond, "low": low, "high": high}
         if kind == ONE_MOTION:
             bounds |= {"centre": math.nan, "dispersion": math.nan}
         arrays = {name: np.full(1, value) for name, value in bounds.items()}
-        return replace(found, **arrays, kinds=np.full(1, KINDS.index(kind)))
+        return replace(curves, **arrays, kinds=np.full(1, KINDS.index(kind)))
 
     def _bound(self, whole: Curves) -> tuple[str, float]:
-        """Return why the median of a fitted curve is only bounded, and on which side it lies; 0 if on none.
+        """Reason why the median of a fitted curve is only a bound, and its side; 0 if it is none.
 
         A curve is not determined where all that exceed the limit, or all that do not, are of one motion:
         without it there is none. And beyond the intensities that were run a median is a guess.
@@ -312,7 +312,7 @@ class Sample:
 
 
 def expanded_shares(motions: int) -> tuple[float, float]:
-    """Return the shares of the resamples below the lower and below the upper end of an interval."""
+    """Expanded shares of resamples below the lower and the upper end of an interval."""
     from scipy.special import ndtr, stdtrit
 
     quantile = float(stdtrit(motions - 1, 0.5 * (1.0 - CONFIDENCE)))
@@ -321,7 +321,7 @@ def expanded_shares(motions: int) -> tuple[float, float]:
 
 
 def interval(value: float, drawn: Array, motions: int, *, above: Array | None = None) -> Interval:
-    """Return the interval of a number from its resamples (B,), or from what bounds them below and above.
+    """Interval of a number from its resamples (B,), or from their lower and upper bounds.
 
     Infinite ones are values like others. One that is not known, because the resample has no curve, may be
     anything: it counts as minus infinity at the lower end and as infinity at the upper one.
@@ -337,23 +337,23 @@ def interval(value: float, drawn: Array, motions: int, *, above: Array | None = 
 
 
 def spread_interval(value: float, drawn: Array, motions: int) -> Interval:
-    """Return the interval of a dispersion from its resamples (B,).
+    """Interval of a dispersion from its resamples (B,).
 
     A sample is less dispersed than what it is drawn from, and its resamples are less so again. So their
     interval is reflected about the value, in the logarithm (the basic bootstrap: A. C. Davison and D. V.
     Hinkley, Bootstrap Methods and their Application, 1997, section 5.2): at n = 22 that takes the coverage
     from 87 to 96 %.
     """
-    found = interval(value, drawn, motions)
+    ends = interval(value, drawn, motions)
     return Interval(
         value=value,
-        low=value**2 / found.high if found.high > 0.0 else 0.0,
-        high=value**2 / found.low if found.low > 0.0 else math.inf,
+        low=value**2 / ends.high if ends.high > 0.0 else 0.0,
+        high=value**2 / ends.low if ends.low > 0.0 else math.inf,
     )
 
 
 def bands(curves: Curves, x: Array, motions: int) -> tuple[Array, Array]:
-    """Return the lower and the upper end (n,) of the band of a curve at logarithms of intensities (n,)."""
+    """Lower and the upper end (n,) of the band of a curve at logarithms of intensities (n,)."""
     drawn = np.sort(curves.at(x), axis=0)  # NaN last
     known = np.count_nonzero(~np.isnan(drawn), axis=0)
     low, high = (np.maximum(share * (known - 1), 0.0) for share in expanded_shares(motions))

@@ -1,4 +1,4 @@
-"""Annual frequency of exceeding a limit: a hazard curve times what exceeds it at each intensity, integrated.
+"""Annual frequency of exceeding a limit: a hazard curve integrated with the probability of exceedance.
 
 The mean annual frequency is the integral of p(theta) |d lambda(theta)|, with the frequency of exceedance
 lambda of a site and the probability p of exceeding a limit at an intensity theta. Without a fitted curve p is
@@ -39,7 +39,7 @@ OFTEN = 1e3
 
 
 def lognormal_frequency(hazard: HazardCurve, centre: float, dispersion: float) -> float:
-    """Return the annual frequency [1/year] by a lognormal curve.
+    """Annual frequency [1/year] by a lognormal curve.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def lognormal_frequency(hazard: HazardCurve, centre: float, dispersion: float) -
 
 
 def mean_over(hazard: HazardCurve, low: Array, high: Array) -> Array:
-    """Return the mean of the annual frequency over ln theta between two of its values each [1/year].
+    """Mean annual frequency over ln theta between two hazard values each [1/year].
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def rate_at(hazard: HazardCurve, x: Array) -> Array:
 
 
 def continued(hazard: HazardCurve, low: float) -> HazardCurve:
-    """Hazard down to the logarithm of an intensity, as steep below its first point as above, to `OFTEN`."""
+    """Hazard curve extended down to the logarithm of an intensity, with its first slope, up to `OFTEN`."""
     x, y = np.log(hazard.intensity), np.log(hazard.annual_frequency)
     if low >= x[0] - 1e-9:
         return hazard
@@ -134,7 +134,7 @@ class Frequencies:
 
 
 def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: Array) -> Frequencies:
-    """Return the annual frequencies of indicators.
+    """Annual frequencies from indicators of exceedance.
 
     Parameters
     ----------
@@ -183,13 +183,13 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
 
 
 def _fill(x: Array, y: Array) -> Array:
-    """Return an indicator, unknown values interpolated between neighbours; all NaN if none is known."""
+    """Indicator with unknown values interpolated between neighbours; all NaN if none is known."""
     known = ~np.isnan(y)
     return y if known.all() or not known.any() else np.interp(x, x[known], y[known])
 
 
 def _pieces(hazard: HazardCurve, x: Array, y: Array, low: Array) -> Array:
-    """Return the integral over each interval of the nodes (R, N), from `low` (R,) to the last point."""
+    """Integral over each interval of the nodes (R, N), from `low` (R,) to the last point."""
     end = math.log(hazard.intensity[-1])
     a, b = (np.minimum(np.maximum(each, low[:, None]), end) for each in (x[:, :-1], x[:, 1:]))
     width, wide = np.diff(x, axis=1), b > a

@@ -63,7 +63,7 @@ def intensity(
     period: float = 1.0,
     friction: float = 1.0,
 ) -> float:
-    """Return the intensity of a ground motion for a cylinder.
+    """Intensity of a ground motion for a cylinder.
 
     Parameters
     ----------
@@ -99,14 +99,14 @@ def intensity(
     if name == OVER_FRICTION:
         require_positive("friction of peak_over_friction", friction)
         return motion.peak / (gravity * friction)
-    found = _value(name, motion, cylinder, gravity, period)
-    if not found > 0.0:
+    value = _value(name, motion, cylinder, gravity, period)
+    if not value > 0.0:
         raise ValueError(f"the motion {motion.name!r} has no {name}: a component is zero throughout")
-    return found
+    return value
 
 
 def velocity(motion: GroundMotion, *, centred: bool = False) -> Array:
-    """Return the horizontal velocity of the ground (n, 2) [m/s], from rest at the first sample.
+    """Horizontal velocity of the ground (n, 2) [m/s], from rest at the first sample.
 
     Of the acceleration as it is, or `centred`: without its mean, so that the velocity does not drift.
     """
@@ -135,7 +135,7 @@ def pseudo_acceleration(motion: GroundMotion, period: float) -> Array:
 
 @cache  # it takes longer than the motion, and most motions of a study have one step
 def _oscillator(period: float, step: float) -> tuple[Array, Array]:
-    """Return the transfer function from -a to omega^2 x with first-order hold: numerator, denominator."""
+    """Transfer function from -a to omega^2 x with first-order hold: numerator, denominator."""
     from scipy.signal import cont2discrete
 
     omega = 2.0 * math.pi / period
@@ -168,7 +168,7 @@ def velocity_unit(cylinder: RockingBody, gravity: float = 9.81) -> float:
 def uplift_scale(
     motion: GroundMotion, cylinder: RockingBody, gravity: float = 9.81, tendon: Tendon | None = None
 ) -> float:
-    """Return the least factor on a motion with which it uplifts a cylinder; infinite where none does.
+    """Least factor on a motion that uplifts a cylinder; infinite if none does.
 
     From (25), |a| = (g + az) tan(alpha): |a| - az tan(alpha) is convex between two samples, so that it is
     largest at one. A tendon adds its prestress to g; rolling resistance, which raises the threshold, too, is
@@ -186,14 +186,14 @@ def uplift_scale(
 def measures_of(
     motions: Sequence[GroundMotion], cylinder: RockingBody, *, gravity: float = 9.81, period: float = 1.0
 ) -> dict[str, list[float]]:
-    """Every intensity of every motion but `OVER_FRICTION`, NaN where it has none."""
+    """Every intensity of every motion except `OVER_FRICTION`; NaN where undefined."""
     names = [name for name in MEASURES if name != OVER_FRICTION]
     values = {name: [_value(name, motion, cylinder, gravity, period) for motion in motions] for name in names}
     return {name: [each if each > 0.0 else math.nan for each in of] for name, of in values.items()}
 
 
 def largest_resultant(components: Array) -> float:
-    """Return the largest length of horizontal vectors (n, 2)."""
+    """Largest length of horizontal vectors (n, 2)."""
     return float(np.hypot(components[:, 0], components[:, 1]).max())
 
 

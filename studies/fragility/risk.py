@@ -1,4 +1,4 @@
-"""Annual frequency of exceeding a limit by the motions of a fragility: its interval, and what it rests on.
+"""Annual frequency of exceeding a limit under the motions of a fragility: its interval and contributions.
 
 One interval serves frequencies and ratios of two, motions at all levels and motions of each level alone. The
 logarithm of a frequency is, to first order, a sum of parts, one a motion, and so is that of a ratio. Its
@@ -69,16 +69,16 @@ class Exposure:
 
     @property
     def stripes(self) -> bool:
-        """Whether levels have motions of their own, so that no motion has an indicator of all levels."""
+        """Whether each level has its own motions, so that no motion has an indicator at all levels."""
         return not self.made.all()
 
     @property
     def exceeding(self) -> int:
-        """Number of motions that exceed the limit at one level at least."""
+        """Number of motions that exceed the limit at some level."""
         return int((np.nansum(self.y, axis=1) > 0.0).sum())
 
     def frequencies(self, hazard: HazardCurve) -> Frequencies:
-        """Return the annual frequency of each motion; of stripes that of the shares, once."""
+        """Annual frequency of each motion; for stripes one frequency from the shares."""
         if not self.stripes:
             return frequencies_of(hazard, self.x, self.y, self.uplift, self.far)
         known = np.maximum((~np.isnan(self.y)).sum(axis=0), 1)
@@ -89,7 +89,7 @@ class Exposure:
         return replace(shares, far=distant.total)
 
     def terms(self, hazard: HazardCurve, single: Frequencies) -> Array:
-        """Return terms (R, G) of the frequency, the sum of the means of their columns; NaN where not known.
+        """Terms (R, G) whose column means add up to the frequency; NaN where unknown.
 
         One column, the frequency of each motion; of stripes one a level, to whose share it is proportional.
         """
@@ -98,12 +98,12 @@ class Exposure:
         return self.y * self.of_shares(hazard, np.eye(self.y.shape[1])).total
 
     def of_shares(self, hazard: HazardCurve, shares: Array) -> Frequencies:
-        """Return the annual frequency of each of some sets of shares (B, S)."""
+        """Annual frequency for each set of exceedance shares (B, S)."""
         x, ones = np.tile(self.x.mean(axis=0), (len(shares), 1)), np.ones(len(shares))
         return frequencies_of(hazard, x, shares, self.uplift.min() * ones, np.inf * ones)
 
     def between_levels(self, hazard: HazardCurve) -> tuple[float, float]:
-        """Return the annual frequency with each change between two levels at the upper, or at the lower."""
+        """Annual frequency if every change between two levels lies at the upper, or at the lower one."""
         known = ~np.isnan(self.y).all(axis=0)
         x, y = self.x.mean(axis=0)[known], np.nanmean(self.y[:, known], axis=0)
         uplift, far = self.uplift.min(keepdims=True), np.array([np.inf])
@@ -116,7 +116,7 @@ class Exposure:
         return float(low.least[0]), float(high.most[0])
 
     def largest(self, hazard: HazardCurve) -> float:
-        """Return the annual frequency by the upper ends of the intervals of the shares (Clopper-Pearson)."""
+        """Annual frequency from the upper Clopper-Pearson bounds of the shares."""
         runs, over = (~np.isnan(self.y)).sum(axis=0).tolist(), np.nansum(self.y, axis=0).astype(int).tolist()
         ends = [share_interval(k, n).high if n else 1.0 for k, n in zip(over, runs, strict=True)]
         longer = continued(hazard, float(self.uplift.min()))
@@ -127,7 +127,7 @@ class Exposure:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Resampled:
-    """The logarithm of an annual frequency, or of a ratio of two, by all motions and by resamples of them.
+    """Logarithm of an annual frequency, or of a ratio of two, for all motions and for resamples.
 
     Attributes
     ----------
@@ -144,12 +144,12 @@ class Resampled:
     counts: Array
 
     def over(self, other: Resampled) -> Resampled:
-        """Return the ratio to another of the same resamples."""
+        """Ratio to another frequency from equal resamples."""
         with np.errstate(invalid="ignore"):  # two zeros have no ratio
             return replace(self, logs=self.logs - other.logs, parts=self.parts - other.parts)
 
     def interval(self, motions: int) -> Interval:
-        """Return the value with its 95 % interval; ends are NaN where no motion differs from the others."""
+        """Value with its 95 % interval; ends are NaN if all motions are equal."""
         value = float(np.exp(self.logs[0]))
         errors = np.sqrt((self.counts * self.parts**2).sum(axis=1))
         if not (0.0 < value < math.inf and errors[0] > 1e-9):
@@ -162,7 +162,7 @@ class Resampled:
 
 
 def _few_parts_factor(parts: Array) -> float:
-    """Return the 97.5 % quantile of Student's t for a sum of parts (R,), over that for equal parts."""
+    """97.5 % quantile of Student's t for a sum of parts (R,), over the quantile for equal parts."""
     from scipy.special import stdtrit
 
     squares, most = (parts**2).sum(), len(parts) - 1
@@ -172,7 +172,7 @@ def _few_parts_factor(parts: Array) -> float:
 
 
 def resampled(terms: Array, weights: Array) -> Resampled:
-    """Return the sum of the means of terms (R, G) with that of each set of weights (B, R)."""
+    """Sum of the column means of terms (R, G), for all motions and for each set of weights (B, R)."""
     known = ~np.isnan(terms)
     values = np.where(known, terms, 0.0)
     counts = np.vstack([np.ones((1, len(terms))), weights])
@@ -194,7 +194,7 @@ def risk_tables(
     years: float,
     target: float,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return the risk of exceeding a limit of each cylinder and method, and what contributes to it.
+    """Risk of exceeding a limit for each cylinder and method, and its contributions.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ _LEVELS: Mapping[str, Level] = {"below": "satisfied", UNDECIDED: "caution", "abo
 
 
 def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) -> Iterator[Finding]:
-    """Findings of a table of risk: the frequencies of its first method, and what all rest on.
+    """Findings of a risk table: frequencies of its first method, and the shares they depend on.
 
     Parameters
     ----------
@@ -302,7 +302,7 @@ def risk_findings(rows: Sequence[Mapping[str, Any]], site: Mapping[str, Any]) ->
 def frequency_interval(
     hazard: HazardCurve, exposure: Exposure, single: Frequencies, drawn: Resampled, motions: int
 ) -> Interval:
-    """Return an annual frequency with its 95 % interval, wider by what levels and hazard leave open."""
+    """Annual frequency with its 95 % interval, widened for unresolved levels and hazard ends."""
     total, least, most = (float(np.nanmean(each)) for each in (single.total, single.least, single.most))
     of_motions = drawn.interval(motions)
     few = exposure.exceeding < FEWEST_EXCEEDING
@@ -388,7 +388,7 @@ def measure_factor(hazard: HazardCurve, body: Mapping[str, float], period: float
 def exposures_of(
     blocks: Blocks, of_hazard: Mapping[str, tuple[str, float]], dispersion: float | None, limit: str
 ) -> dict[tuple[str, str], Exposure]:
-    """Return the exposure of each cylinder and method in the unit of a hazard.
+    """Exposure of each cylinder and method in the intensity measure of a hazard.
 
     Parameters
     ----------

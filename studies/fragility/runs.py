@@ -1,4 +1,4 @@
-"""Runs of a fragility: its methods, its plan, and the tasks of which each can be kept and repeated singly."""
+"""Runs of a fragility: its methods, its plan, and its cached tasks."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ MODEL_LABELS: Mapping[str, str] = {
 
 
 def default_models(asked: FragilityPlan) -> tuple[str, ...]:
-    """Names of the models where none is named: with a tendon, which has its anchor, and for a slide alone."""
+    """Default models: those with an anchor for a tendon, the sliding model for pure sliding."""
     if asked.limits is not None and {*asked.limits} == {SLIDES}:
         return (str(FLAT),)
     guided = asked.tendon is not None
@@ -82,7 +82,7 @@ class Method:
 
 
 def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) -> tuple[Method, ...]:
-    """Return the methods, in their order; both planes besides where the worse of them is asked for.
+    """Methods in their order, with both planes if the worse plane is asked for.
 
     Parameters
     ----------
@@ -110,20 +110,20 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     planar = {name: Run(None, RECESS, None, plane=azimuth, **loss) for name, azimuth in _PLANES.items()}
     models: dict[str, Run] = {**{model.support: model for model in REDUCED_MODELS}, **planar}
     labels = iter(run_labels([method for method in chosen if isinstance(method, Run)]))
-    found = tuple(
+    listed = tuple(
         Method(label=next(labels), run=method)
         if isinstance(method, Run)
         else Method(label=MODEL_LABELS[method], run=models.get(method))
         for method in chosen
     )
-    for name, count in Counter(method.label for method in found).items():
+    for name, count in Counter(method.label for method in listed).items():
         if count > 1:
             raise ValueError(f"the methods must differ, got {name!r} twice")
-    return found
+    return listed
 
 
 def own_model(method: Method, methods: Sequence[Method]) -> str:
-    """Return the label of the reduced model of the support of an engine, if there is one among the methods.
+    """Label among the methods of the reduced model of an engine's support, if any.
 
     No reduced model knows the walls of a ring.
     """
@@ -143,7 +143,7 @@ _RTOL = 1e-7
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Task:
-    """One cylinder by one method under some motions, each with some factors.
+    """One cylinder by one method under some motions, each at some factors.
 
     Attributes
     ----------
@@ -167,7 +167,7 @@ class Task:
 
     @property
     def points(self) -> list[tuple[str, int]]:
-        """Name of the motion and place of the level of each run."""
+        """Motion name and level index of each run."""
         return [(case.name, step) for case, factors in self.shakings for step in factors]
 
     @property
@@ -195,7 +195,7 @@ class Task:
         return self.run.is_model and homogeneous and not self.contact
 
     def rows(self) -> list[Row]:
-        """Return a row for each motion and factor, in their order."""
+        """Row for each motion and factor, in their order."""
         if self._of_peaks:
             return [row for case, factors in self.shakings for row in self._peaks(case, [*factors.values()])]
         return [self._simulate(case, scale) for case, factors in self.shakings for scale in factors.values()]
@@ -234,12 +234,12 @@ class Task:
         return _row(case, trace.peak_tilt, outcome_of(trace), lost, slides)
 
     def _exceeds(self, displacement: float) -> float:
-        """1 where the gap is used up, 0 where it is not, NaN where there is none or that is not known."""
+        """1 if the displacement exceeds the gap, 0 if not, NaN without a gap or if unknown."""
         return math.nan if self.gap is None or math.isnan(displacement) else float(displacement > self.gap)
 
 
 def slides_by_model(case: Case, run: Run) -> bool:
-    """Whether the model of a run takes a case from rest for a slide."""
+    """Whether the model of a run treats a case from rest as sliding."""
     free = run.is_model and not run.is_planar and run.support.lets_slide
     return free and case.friction < case.friction_of_uplift
 
@@ -247,7 +247,7 @@ def slides_by_model(case: Case, run: Run) -> bool:
 def _row(
     case: Case, peak_tilt: float, outcome: str, contact_lost: float = math.nan, slides: float = math.nan
 ) -> Row:
-    """Row of a run; contact_lost is 1 or 0, NaN where nobody asked, the run failed or its tendon yields.
+    """Row of a run; contact_lost is 1 or 0, NaN if not asked for, failed or yielded.
 
     So is slides, whether the gap is used up.
 
@@ -269,7 +269,7 @@ _LOWEST, _HIGHEST, LEVELS = 1.25, 12.0, 20
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RunPlan(Study[Task, pd.DataFrame]):
-    """Every cylinder under every motion at every level by every method.
+    """Plan of a fragility: cylinders, motions, levels and methods.
 
     `run` yields one row for each: cylinder, motion, step (place of the level), method, peak_tilt [alpha],
     outcome, contact_lost and slides (1, 0, or NaN where nobody asked). A run whose process died failed.
@@ -321,7 +321,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
                 require_runnable(case, self._with_step(run, cylinder))
 
     def motions_of_levels(self) -> list[int]:
-        """Return the number of motions at each level."""
+        """Number of motions at each level."""
         places = [step for steps in (self.stripes or {}).values() for step in steps]
         return [places.count(step) for step in range(len(self.options.levels or ()))]
 
@@ -331,7 +331,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
         return tuple(map(float, self.options.scales or (1.0,)))
 
     def factors(self, cylinder: RockingBody, motion: GroundMotion) -> dict[int, float]:
-        """Return the factors on a motion by their place: one for each level of its, or of the cloud."""
+        """Factors on a motion by level index: one per listed level, or those of the cloud."""
         asked = self.options
         if asked.levels is None:
             return dict(enumerate(self.scales))
@@ -346,7 +346,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
 
     @cached_property
     def points(self) -> pd.DataFrame:
-        """One row for each cylinder, motion and level of it.
+        """One row for each cylinder, motion and listed level.
 
         Place, factor, factor of uplift, whether the motion is synthetic, all intensities.
         """
@@ -366,7 +366,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
         return pd.DataFrame(rows)
 
     def tasks(self) -> list[Task]:
-        """Runs: engines singly, reduced models some motions together until they take about a second."""
+        """Tasks: one per engine run, and groups of motions of about a second for reduced models."""
         contact = CONTACT_LOST in (self.options.limits or ())
         tasks: list[Task] = []
         for name, cylinder in self.cylinders.items():
@@ -414,7 +414,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
         return task.title
 
     def lost(self, task: Task, why: str) -> pd.DataFrame:
-        """Table of a task whose process died: its runs failed."""
+        """Table of failed runs, for a task whose process died."""
         return pd.DataFrame([_row(task.shakings[0][0], math.nan, "failed")] * len(task.points))
 
     def makers(self) -> Mapping[str, str]:
@@ -422,7 +422,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
         return all_makers(method.run for method in self.methods if method.run is not None)
 
     def results(self, tables: list[pd.DataFrame]) -> pd.DataFrame:
-        """Runs of all tasks, and the worse plane where it is asked for."""
+        """Runs of all tasks, with the worse plane if it is asked for."""
         named = []
         for task, own in zip(self.tasks(), tables, strict=True):
             motions, steps = zip(*task.points, strict=True)
@@ -441,7 +441,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
 def motions_by_level(
     given: Mapping[float, Sequence[GroundMotion]],
 ) -> tuple[tuple[float, ...], list[GroundMotion], dict[str, tuple[int, ...]]]:
-    """Return the levels, all motions, and the places of the levels of each motion by its name.
+    """Levels, all motions, and by motion name the indices of its levels.
 
     Raises
     ------
@@ -469,7 +469,7 @@ def motions_by_level(
 def default_levels(
     cylinders: Mapping[str, RockingBody], motions: Sequence[GroundMotion], asked: FragilityPlan
 ) -> tuple[float, ...]:
-    """Return levels from a little above uplift to where most overturn, each the same factor above the last.
+    """Default levels: equal ratios from just above uplift to where most motions overturn.
 
     A tendon raises the lowest as it raises uplift, and the highest by its way to the balance besides. In
     another measure than the peak acceleration: what the median motion has at these levels.
@@ -513,7 +513,7 @@ _ENDS = [*NO_PEAK, "overturned", YIELDED]  # the worst first
 
 
 def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of the worse plane: the larger tilt of both, overturned where one is."""
+    """Rows of the worse plane: the larger tilt of both, overturned if one is."""
     parts = [runs[runs["method"] == MODEL_LABELS[name]].set_index(KEYS) for name in _PLANES]
     of = {name: pd.concat([part[name] for part in parts], axis=1) for name in parts[0]}
     ends = [(of["outcome"] == name).any(axis=1) for name in _ENDS]

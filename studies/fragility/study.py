@@ -1,4 +1,4 @@
-"""Fragility: how probable it is that shaking of an intensity exceeds a limit, by several methods."""
+"""Fragility: probability that shaking of an intensity exceeds a limit, by several methods."""
 
 from __future__ import annotations
 
@@ -107,14 +107,14 @@ class Fragility(Results, kind=KIND):
     >>> import rockwobble as rw
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> shaking = rw.synthetic_motions(6, peak=1.0, seed=1)
-    >>> found = rw.fragility(pier, shaking, methods=["recess"], levels=[2, 4, 8], resamples=20, workers=1)
-    >>> overturned = found.fits[found.fits["limit"] == "overturned"]
+    >>> study = rw.fragility(pier, shaking, methods=["recess"], levels=[2, 4, 8], resamples=20, workers=1)
+    >>> overturned = study.fits[study.fits["limit"] == "overturned"]
     >>> overturned[["method", "runs", "exceeded"]].to_dict("records")
     [{'method': 'recess model', 'runs': 18, 'exceeded': 10}]
     """
 
     def headline(self) -> dict[str, Number]:
-        """Return the medians of overturning, of too few motions its counts, and the ratios of the medians."""
+        """Medians of overturning, or counts if there are too few motions, and ratios of the medians."""
         fits, contrasts = (
             [row for row in rows_of(table) if row["limit"] == OVERTURNED]
             for table in (self.fits, self.contrasts)
@@ -131,7 +131,7 @@ class Fragility(Results, kind=KIND):
         }
 
     def median_or_bound(self, cylinder: str, median: float) -> float | str:
-        """Return a median; of one that lies beyond the intensities that were run the bound, as "> 12"."""
+        """Median as text; as a bound, such as "> 12", if it lies beyond the intensities run."""
         if math.isnan(median) or 0.0 < median < math.inf:
             return float(median)
         run = self.counts.loc[self.counts["cylinder"] == cylinder, "intensity"]
@@ -146,7 +146,7 @@ class Fragility(Results, kind=KIND):
         limit: str = OVERTURNED,
         target: float = TARGET,
     ) -> pd.DataFrame:
-        """Return the mean annual frequency of overturning at a site, with and without a fitted curve.
+        """Mean annual frequency of overturning at a site, with and without a fitted curve.
 
         The first is the integral of the share of the motions that overturn over the hazard curve, exact for
         a hazard that is a power law between its points and shares that are linear in the logarithm between
@@ -200,7 +200,7 @@ class Fragility(Results, kind=KIND):
         limit: str = OVERTURNED,
         target: float = TARGET,
     ) -> Fragility:
-        """Return the same with the tables risk and contributions, and the hazard among its facts."""
+        """Fragility with the tables risk and contributions, and the hazard among its facts."""
         require_positive("years", years, "years")
         require_positive("target", target, "1/year")
         facts = self.facts
@@ -229,13 +229,13 @@ class Fragility(Results, kind=KIND):
         )
 
     def findings(self) -> Findings:
-        """Return medians or what bounds them, ratios of methods, remarks, and what the risk says."""
+        """Findings on medians or their bounds, ratios of methods, input, and risk."""
         contrasts, risk = main_contrasts(self), rows_of(self.tables.get("risk", pd.DataFrame()))
         own = fragility_findings(self.facts, rows_of(self.fits), contrasts, self.median_or_bound)
         return Findings([*own, *(risk_findings(risk, self.facts["hazard"]) if risk else ())])
 
     def sheets(self) -> dict[str, bytes]:
-        """Return the counts as CSV and as JSON, for tools that fit curves of their own."""
+        """Counts as CSV and as JSON, for tools that fit curves of their own."""
         rows = self.counts.to_dict("records")
         return {
             "counts.csv": self.counts.to_csv(index=False).encode(),
@@ -255,12 +255,12 @@ class Fragility(Results, kind=KIND):
 
 
 def known_ratio(ratio: float) -> float | None:
-    """Return a ratio of medians; None where one of them is only bounded."""
+    """Ratio of medians; None if one of them is only a bound."""
     return float(ratio) if 0.0 < ratio < math.inf else None
 
 
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Facts) -> Fragility:
-    """Return the fragility by the runs of the plan that `facts` state."""
+    """Fragility from the runs of the plan in `facts`."""
     if runs["outcome"].isin(NO_PEAK).all():
         raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
     blocks = blocks_of(runs, points, facts["limits"], str(facts["measure"]))
@@ -285,15 +285,15 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Facts) -> Frag
     return Fragility(tables=tables, facts=plain(facts))
 
 
-def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
-    """Return the rows of the contrasts that answer the three questions on overturning, by question.
+def main_contrasts(fragility: Fragility) -> dict[str, list[Row]]:
+    """Contrasts that answer the three questions on overturning, by question.
 
     "planar": each planar method against the recess model; "support": the same method on another support
     against the recess; "engine": an engine against the model of its support, and another engine on it.
     """
-    methods: Mapping[str, Mapping[str, Any]] = found.facts["methods"]
+    methods: Mapping[str, Mapping[str, Any]] = fragility.facts["methods"]
     answers: dict[str, list[Row]] = {"planar": [], "support": [], "engine": []}
-    for row in rows_of(found.contrasts):
+    for row in rows_of(fragility.contrasts):
         question, turned = _question(methods, row["method"], row["against"])
         if question and row["limit"] == OVERTURNED:
             answers[question].append(_inverse(row) if turned else row)
@@ -301,7 +301,7 @@ def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
 
 
 def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: str) -> tuple[str, bool]:
-    """Return the question that a pair answers, and whether the pair is the other way round; "" for none."""
+    """Question that a pair answers, and whether its order is reversed; "" for none."""
     one, other = methods[method], methods[against]
     engines, supports = ([each[name] for each in (one, other)] for name in ("engine", "support"))
     if engines[0] == engines[1]:
@@ -316,7 +316,7 @@ def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: st
 
 
 def _inverse(row: Row) -> Row:
-    """Return a contrast with its methods exchanged."""
+    """Contrast with its methods exchanged."""
     ratios = {"ratio": "ratio", "ratio_low": "ratio_high", "ratio_high": "ratio_low"}
     ratios |= {"ratio_least": "ratio_most", "ratio_most": "ratio_least"}
     spread = "dispersion_difference"
@@ -433,8 +433,8 @@ def fragility(
     >>> from rockwobble.models import Cylinder
     >>> column = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
     >>> shaking = synthetic_motions(8, peak=1.0, seed=1)
-    >>> found = fragility(column, shaking, methods=["recess"], levels=[1.5, 3, 6], resamples=50, workers=1)
-    >>> overturned = found.counts[found.counts["limit"] == "overturned"]
+    >>> study = fragility(column, shaking, methods=["recess"], levels=[1.5, 3, 6], resamples=50, workers=1)
+    >>> overturned = study.counts[study.counts["limit"] == "overturned"]
     >>> list(zip(overturned["intensity"], overturned["k"], overturned["n"]))
     [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
     """
@@ -505,7 +505,7 @@ def _facts(plan: RunPlan) -> dict[str, object]:
 
 
 def limits_of(asked: FragilityPlan) -> Sequence[str]:
-    """Limits of a plan; by default those that take no forces, "tendon yields" where it can.
+    """Limits of a plan; by default those without contact forces, and "tendon yields" if it can.
 
     Raises
     ------
@@ -533,7 +533,7 @@ def _by_name(
     if isinstance(cylinders, Mapping):
         return dict(cylinders)
     several = [cylinders] if isinstance(cylinders, RockingBody) else cylinders
-    found = {f"R = {each.semidiagonal:g} m, tan α = {each.tan_alpha:g}": each for each in several}
-    if len(found) < len(several):
+    named = {f"R = {each.semidiagonal:g} m, tan α = {each.tan_alpha:g}": each for each in several}
+    if len(named) < len(several):
         raise ValueError("cylinders of the same size and slenderness need names: give them as a mapping")
-    return found
+    return named

@@ -1,4 +1,4 @@
-"""The tables of a fragility: counts, fits with their bands, methods beside each other, gaps, efficiency.
+"""Tables of a fragility: counts, fits with bands, contrasts of methods, gaps, efficiency.
 
 They are of blocks of motions and levels: where each run exceeds each limit. A gap in the overturning region
 is a level at which a motion leaves a cylinder standing that the same motion made weaker overturns. An
@@ -50,7 +50,7 @@ DEFAULT_LIMITS = tuple(name for name in LIMITS if name not in (CONTACT_LOST, TEN
 
 
 def exceedance(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
-    """Return 1 where a run exceeds a limit, 0 where it does not, NaN where that is not known.
+    """1 where a run exceeds a limit, 0 where it does not, NaN where unknown.
 
     Overturned is what the run itself says: the side reaches the ground, or no later ground motion can stop
     it. Such a run exceeds every limit: when in its fall it leaves the ground depends on where a method ends
@@ -82,13 +82,13 @@ Row = dict[str, Any]  # of a table, by the names of its columns
 
 
 def rows_of(table: pd.DataFrame) -> list[Row]:
-    """Rows of a table."""
+    """Rows of a table as dictionaries."""
     return [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Blocks:
-    """The runs as blocks of motions and levels.
+    """Runs as arrays by motion and level.
 
     Attributes
     ----------
@@ -128,35 +128,35 @@ class Blocks:
 
     @property
     def fewest(self) -> int:
-        """Number of motions at the level that has fewest."""
+        """Least number of motions at any level."""
         return int(self.made.sum(axis=0).min())
 
     def weights(self, count: int, seed: int) -> Array:
-        """Return resamples (count, R) of the motions, those with the same levels among themselves."""
+        """Resamples (count, R) of the motions, stratified by their set of levels."""
         strata = np.unique(self.made, axis=0, return_inverse=True)[1].ravel()
         return resamples(len(self.motions), count, seed, strata=strata)
 
     def known_keys(self) -> Iterator[Key]:
-        """Yield cylinder, method and limit where anything is known."""
+        """Yield each cylinder, method and limit with any known outcome."""
         for key in itertools.product(self.cylinders, self.methods, self.limits):
             if not np.isnan(self.exceedance(*key)).all():
                 yield key
 
     def sample(self, cylinder: str, method: str, limit: str, measure: str | None = None) -> Sample:
-        """Return the sample of a method and a limit, by one intensity; default: that of the levels."""
+        """Sample of a method and a limit, by one intensity measure; default: that of the levels."""
         x = self.intensities(cylinder, measure or self.measure)
         return Sample(x=x, y=self.exceedance(cylinder, method, limit))
 
     def exceedance(self, cylinder: str, method: str, limit: str) -> Array:
-        """Return 1, 0 or NaN for each motion and level (R, S)."""
+        """Exceedance indicator (1, 0 or NaN) for each motion and level (R, S)."""
         return exceedance(self.runs[cylinder, method], limit).reshape(len(self.motions), -1)
 
     def of_points(self, cylinder: str, column: str) -> Array:
-        """Return a column of the points of a cylinder for each motion and level (R, S)."""
+        """Column of the points of a cylinder by motion and level (R, S)."""
         return self.points[cylinder][column].to_numpy(float).reshape(len(self.motions), -1)
 
     def intensities(self, cylinder: str, measure: str) -> Array:
-        """Logarithms of intensities (R, S), of a stripe the same; the mean of a level where none is made."""
+        """Log intensities (R, S), constant in a stripe; the level mean where a run is missing."""
         with np.errstate(divide="ignore"):
             x = np.log(self.of_points(cylinder, measure))
         known = ~np.isnan(x)
@@ -166,7 +166,7 @@ class Blocks:
 
 
 def blocks_of(runs: pd.DataFrame, points: pd.DataFrame, limits: Sequence[str], measure: str) -> Blocks:
-    """Return the blocks of a table of runs and of the table of the points at which they were made."""
+    """Blocks from a table of runs and the table of its points."""
     motions, places = list(dict.fromkeys(points["motion"])), ["motion", "step"]
     whole = pd.MultiIndex.from_product([motions, range(int(points["step"].max()) + 1)], names=places)
 
@@ -192,7 +192,7 @@ _NO_FIT = {"deviance": math.nan, "degrees": 0, "p": math.nan, "largest": math.na
 
 
 def count_table(blocks: Blocks) -> pd.DataFrame:
-    """Return n runs and k exceedances at each intensity, from which other tools can fit curves of their own.
+    """Number of runs n and exceedances k at each intensity, for fits by other tools.
 
     Of a cloud each run is a row with n = 1.
     """
@@ -210,14 +210,14 @@ def _about(key: Key) -> dict[str, Any]:
 
 
 def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
-    """Return the curve of each cylinder, method and limit with its intervals and its goodness of fit."""
+    """Curve of each cylinder, method and limit with its intervals and goodness of fit."""
     rows = []
     motions = blocks.fewest
-    for key, found in fitted.items():
+    for key, curves in fitted.items():
         sample, many = blocks.sample(*key), drawn[key]
         x, n, k = sample.counts()
-        centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
-        kind, middle = KINDS[found.kinds[0]], float(found.median[0])
+        centre, dispersion = float(curves.centre[0]), float(curves.dispersion[0])
+        kind, middle = KINDS[curves.kinds[0]], float(curves.median[0])
         median = interval(middle, many.low, motions, above=many.high)
         spread = spread_interval(dispersion, many.dispersion, motions)
         held = goodness(x, n[0], k[0], centre, dispersion) if kind in (FITTED, EXTRAPOLATED) else _NO_FIT
@@ -247,27 +247,27 @@ RATIOS_OF_FAILED = ("ratio_least", "ratio_most")
 
 
 def _bounds_of_failed(sample: Sample, made: NDArray[np.bool_] | bool = True) -> tuple[float, float]:
-    """Return the medians if all runs that were made and failed exceed the limit, and if none does."""
+    """Medians if all failed runs exceed the limit, and if none does."""
     failed = np.isnan(sample.y) & made
     least, most = (Sample(x=sample.x, y=np.where(failed, fate, sample.y)).curves() for fate in (1.0, 0.0))
     return math.exp(least.median[0]), math.exp(most.median[0])
 
 
 def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
-    """Return the curves point by point, each with its band.
+    """Curves point by point, each with its band.
 
     One whose median lies below the intensities that were run is unknown there, and so is one above them.
     Where all depends on one motion there is none.
     """
     tables = []
-    for key, found in fitted.items():
-        if KINDS[found.kinds[0]] == ONE_MOTION:
+    for key, curves in fitted.items():
+        if KINDS[curves.kinds[0]] == ONE_MOTION:
             continue
-        sample, median = blocks.sample(*key), found.median[0]
+        sample, median = blocks.sample(*key), curves.median[0]
         first = sample.x.min() - math.log(_BEYOND) * (median != -math.inf)
         x = np.linspace(first, sample.x.max() + math.log(_BEYOND) * (median != math.inf), _POINTS)
         low, high = bands(drawn[key], x, blocks.fewest)
-        band = {"intensity": np.exp(x), "probability": found.at(x)[0], "low": low, "high": high}
+        band = {"intensity": np.exp(x), "probability": curves.at(x)[0], "low": low, "high": high}
         tables.append(pd.DataFrame(_about(key) | band))
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=_CURVE)
 
@@ -279,7 +279,7 @@ def contrast_table(
     weights: Array,
     margin: float,
 ) -> pd.DataFrame:
-    """Return the ratio of the medians and the difference of the dispersions of every two methods.
+    """Ratio of the medians and the difference of the dispersions of every two methods.
 
     Of the same motions: a run that failed by one method leaves out that of the other, and both curves are of
     the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders. A run
@@ -319,24 +319,24 @@ def contrast_table(
 
 
 def _differences(pair: Sequence[Curves]) -> Array:
-    """Differences (4, B): of the medians' logarithms, of dispersions, and the first's least and largest."""
+    """Differences (4, B): log medians, dispersions, and the least and largest of the first."""
     first, second = ([each.median, each.dispersion, each.low, each.high] for each in pair)
     with np.errstate(invalid="ignore"):  # two curves that are never reached have no ratio
         return np.asarray(np.subtract(first, [*second[:2], *second[:1:-1]]), dtype=np.float64)
 
 
-def curve_contrast(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, float | str]:
-    """Return the contrast of two curves.
+def curve_contrast(differences: Array, drawn: Array, motions: int, margin: float) -> dict[str, float | str]:
+    """Contrast of two curves.
 
     Parameters
     ----------
-    found, drawn : ndarray, shapes (4, 1) and (4, B)
+    differences, drawn : ndarray, shapes (4, 1) and (4, B)
         Differences of the logarithms of the medians, of the dispersions, and the least and the largest that
         the first may be, and those of the resamples.
     motions : int
     margin : float
     """
-    (centre, spread), (spreads, lows, highs) = found[:2, 0], drawn[1:]
+    (centre, spread), (spreads, lows, highs) = differences[:2, 0], drawn[1:]
     ratio = interval(float(centre), lows, motions, above=highs).exponential()
     return {
         **ratio.columns("ratio"),
@@ -347,7 +347,7 @@ def curve_contrast(found: Array, drawn: Array, motions: int, margin: float) -> d
 
 
 def margin_of(ratio: Interval) -> float:
-    """Return the least margin within which the whole interval of a ratio lies; infinite without an end."""
+    """Least margin that contains the whole interval of a ratio; infinite without an end."""
     if not (ratio.low > 0.0 and math.isfinite(ratio.high)):
         return math.inf
     return max(ratio.high, 1.0 / ratio.low, 1.0) - 1.0
@@ -363,7 +363,7 @@ _GAPS += ["median", "median_incremental", "bias", "bias_low", "bias_high"]
 
 
 def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
-    """Return, for each cylinder and method, how many motions have gaps and what stopping early does.
+    """Number of motions with gaps for each cylinder and method, and the effect of stopping early.
 
     Empty where the motions are not all run at every level.
 
@@ -396,7 +396,7 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
 
 
 def below_gaps(y: Array) -> NDArray[np.bool_]:
-    """Mask (R, S) of the runs that overturn while the same motion, stronger, leaves the cylinder standing.
+    """Mask (R, S) of overturned runs with a standing run of the motion at a higher level.
 
     Parameters
     ----------
@@ -410,7 +410,7 @@ def below_gaps(y: Array) -> NDArray[np.bool_]:
 
 
 def incremental(y: Array) -> Array:
-    """Return the outcome (R, S) of each level as an analysis has it that stops at the first overturning."""
+    """Outcome (R, S) of an incremental analysis that stops at the first overturning."""
     fell = np.maximum.accumulate(np.nan_to_num(y, nan=0.0), axis=1)
     return np.where(np.isnan(y) & (fell == 0.0), np.nan, fell)
 
@@ -421,7 +421,7 @@ _MOST_NUMBERS, _FEWEST = 150_000, 100
 
 
 def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFrame:
-    """Return the dispersion of one method by each measure, and over that of the best, of the same resamples.
+    """Dispersion of one method by each intensity measure, and its ratio to the smallest, from equal samples.
 
     The runs are the same for every measure: from where no motion overturns to where nearly all do, so that
     it matters little by which measure their levels were chosen.
@@ -437,12 +437,12 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
             if measure in blocks.points[cylinder]
             and np.isfinite(blocks.of_points(cylinder, measure)[blocks.made]).all()
         }
-        found = {measure: sample.curves() for measure, sample in samples.items()}
-        fitted = [measure for measure, curve in found.items() if KINDS[curve.kinds[0]] == FITTED]
+        curves = {measure: sample.curves() for measure, sample in samples.items()}
+        fitted = [measure for measure, curve in curves.items() if KINDS[curve.kinds[0]] == FITTED]
         if not fitted:
             continue
         some = weights[: max(_FEWEST, _MOST_NUMBERS // samples[fitted[0]].y.size)]
-        spreads = {measure: float(found[measure].dispersion[0]) for measure in fitted}
+        spreads = {measure: float(curves[measure].dispersion[0]) for measure in fitted}
         drawn = {measure: samples[measure].curves(some).dispersion for measure in fitted}
         best = min(fitted, key=spreads.__getitem__)
         for measure, spread in spreads.items():
@@ -454,7 +454,7 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
                     "cylinder": cylinder,
                     "method": method,
                     "measure": measure,
-                    "median": float(np.exp(found[measure].centre[0])),
+                    "median": float(np.exp(curves[measure].centre[0])),
                     **spread_interval(spread, drawn[measure], motions).columns("dispersion"),
                     **over.columns("over_best"),
                     "best": measure == best,

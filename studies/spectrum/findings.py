@@ -51,7 +51,7 @@ def _mode(spectrum: TiltMaps) -> Iterator[Finding]:
 
 
 def _boundary(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterator[Finding]:
-    """Findings on how the overturning boundary in 3D lies to those of both planes, and what is above it."""
+    """Findings on the overturning boundary in 3D compared with both planes, and on safe gaps above it."""
     bands, every = tables["contrast"].iloc[:-1], tables["contrast"].iloc[-1]
     shares = {f"share_{name}": float(every[f"{name}_edge"]) for name in ("lower", "higher")}
     yield Finding(key="spectrum.boundary", values={**shares, "length": unconservative_from(spectrum)})
@@ -71,7 +71,7 @@ def _boundary(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> Iterato
 
 
 def _search(spectrum: TiltMaps, lowest: pd.DataFrame) -> Iterator[Finding]:
-    """Findings on how the boundary was searched, what may be missed, and what is left to chance."""
+    """Findings on the search for the boundary: its resolution, missed windows, and sensitive cells."""
     space, sizes = lowest[lowest["series"] == SPATIAL], len(spectrum.semidiagonals)
     overturned = space[np.isfinite(space["intensity"])]
     steps = {"intensity": spectrum.searched_from[SPATIAL], "intensity_step": spectrum.plan.search_step}

@@ -52,7 +52,7 @@ class TiltMaps(SpectrumRuns):
     below: Mapping[str, Array]
 
     def component_share(self, series: str) -> float:
-        """Peak of what drives a series over the peak of the horizontal resultant [-]."""
+        """Peak of the component that drives a series over the peak horizontal resultant [-]."""
         if series == SPATIAL:
             return 1.0
         column = self.motion.acceleration[:, SERIES.index(series) - 1]
@@ -63,12 +63,12 @@ class TiltMaps(SpectrumRuns):
         return overturned(self.peak_tilt[series])
 
     def failed(self) -> NDArray[np.bool_]:
-        """Whether any run of a cell failed (n_R, n_I): such cells are left out of every share."""
+        """Whether any run of a cell failed (n_R, n_I); such cells are excluded from all shares."""
         tilts = np.stack([self.peak_tilt[series] for series in SERIES])
         return np.asarray(np.isnan(tilts).any(axis=0), dtype=np.bool_)
 
     def facts(self) -> dict[str, object]:
-        """Facts that the tables do not hold, for a manifest."""
+        """Facts beyond the tables, for a manifest."""
         stated = {name: getattr(self.plan, name) for name in _STATED}
         motion = {"name": self.motion.name, "time_step": self.motion.time_step}
         return {"tan_alpha": self.tan_alpha, "searched_from": self.searched_from, **stated, "motion": motion}
@@ -131,7 +131,7 @@ def record_frame(motion: GroundMotion) -> pd.DataFrame:
 
 
 def maps_of(tables: Mapping[str, pd.DataFrame], facts: Facts) -> TiltMaps:
-    """Maps of stored tables, with the same bits."""
+    """Maps from stored tables, bitwise equal to the originals."""
     cells, lowest = tables["spectrum"], dict(iter(tables["lowest"].groupby("series")))
     sizes, levels = (np.unique(cells[name].to_numpy()) for name in ("semidiagonal", "intensity"))
     tilts = dict(iter(cells.groupby("series")["peak_tilt"]))
@@ -149,7 +149,7 @@ def maps_of(tables: Mapping[str, pd.DataFrame], facts: Facts) -> TiltMaps:
 
 
 def safe_gaps(spectrum: TiltMaps) -> pd.DataFrame:
-    """Ranges of intensities above the lowest overturning one in which a cylinder stands.
+    """Safe gaps: intensity ranges above the lowest overturning one in which a cylinder stands.
 
     Columns: series, semidiagonal [m], lower and upper, the first and last intensity of the grid that the
     cylinder stands [-], closed, whether a higher one overturns it again. A failed run ends a gap, and
@@ -214,7 +214,7 @@ def tilt_maps(
 
 @dataclass(frozen=True, slots=True)
 class MapStudy(Study[SpectrumPart, TiltMaps]):
-    """Sizes at intensities in each series, some sizes of one series a part; see `SpectrumPart`."""
+    """Sizes at intensities in each series, some sizes of one series per task; see `SpectrumPart`."""
 
     kind: ClassVar[str] = KIND
     what: ClassVar[str] = "parts"
@@ -222,7 +222,7 @@ class MapStudy(Study[SpectrumPart, TiltMaps]):
     threads: int | None = None
 
     def tasks(self) -> list[SpectrumPart]:
-        """Parts, series by series."""
+        """Tasks, series by series."""
         return [
             SpectrumPart(series=name, places=places, runs=self.runs, threads=self.threads)
             for name in SERIES
@@ -231,15 +231,15 @@ class MapStudy(Study[SpectrumPart, TiltMaps]):
 
     @staticmethod
     def row(task: SpectrumPart) -> pd.DataFrame:
-        """Rows of a part, one for each size."""
+        """Rows of a task, one for each size."""
         return run_part(task)
 
     def key(self, task: SpectrumPart) -> str:
-        """Hash of what a part depends on."""
+        """Hash of the inputs of a task."""
         return task.key()
 
     def results(self, tables: list[pd.DataFrame]) -> TiltMaps:
-        """Maps of all parts."""
+        """Maps from all tasks."""
         series = [part.series for part in self.tasks()]
         whole = {
             name: pd.concat([table for own, table in zip(series, tables, strict=True) if own == name])

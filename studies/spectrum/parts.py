@@ -1,4 +1,4 @@
-"""Runs of a spectrum: what drives each series, its uplift, and parts that are kept as they finish."""
+"""Runs of a spectrum: ground motion of each series, its uplift factor, and cached parts."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Options(TypedDict, total=False):
 
 
 def series_options(series: str, support: str) -> Options:
-    """Options of a reduced run that make it one of a series; `support` is that in 3D."""
+    """Options of a reduced run for one series; `support`: support in 3D."""
     return {"support": support} if series == SPATIAL else {"plane": AZIMUTH[series]}
 
 
@@ -148,7 +148,7 @@ class SpectrumRuns:
         return self.intensities * self.unit
 
     def case(self, size: float, scale: float) -> Case:
-        """Case of one cylinder, with enough friction where the plan states none."""
+        """Case of one cylinder, with ample friction if the plan states none."""
         plan = self.plan
         return Case(
             WobblingFrame(Cylinder(semidiagonal=size, tan_alpha=self.tan_alpha), plan.slab_mass_ratio),
@@ -161,7 +161,7 @@ class SpectrumRuns:
 
 
 def runs_of(tan_alpha: float, motion: GroundMotion, plan: SpectrumPlan) -> SpectrumRuns:
-    """Runs of a plan.
+    """Runs specified by the options of a spectrum.
 
     Raises
     ------
@@ -228,7 +228,7 @@ class SpectrumPart:
 
     @property
     def name(self) -> str:
-        """Name, for people."""
+        """Description of the part, for the progress callback."""
         first, last = self.semidiagonals[0], self.semidiagonals[-1]
         return f"{TITLES[self.series]}, R = {first:.3g} m" + (f" to {last:.3g} m" if last > first else "")
 
@@ -243,7 +243,7 @@ class SpectrumPart:
 
 
 def run_part(part: SpectrumPart) -> pd.DataFrame:
-    """One row for each size: lowest, below and the peak tilt at each level, by its place."""
+    """One row per size: lowest, below, and by index the peak tilt at each level."""
     runs, plan, sizes, workers = part.runs, part.runs.plan, part.semidiagonals, part.threads
     elastic = partial(
         reduced.peak_tilts,
@@ -283,6 +283,6 @@ def run_part(part: SpectrumPart) -> pd.DataFrame:
 
 
 def blocks_of_sizes(count: int) -> list[range]:
-    """Places of the sizes of each part: as many as there are threads, and some on few."""
+    """Indices of the sizes of each part: one part per thread, or few sizes with few threads."""
     step = max(_SIZES, usable_cpus())
     return [range(first, min(first + step, count)) for first in range(0, count, step)]

@@ -35,7 +35,7 @@ _CLOSE = 1e-6  # relative: so near to uplift there is nothing to draw between
 
 
 def lowest_on_grid(intensities: Array, peak_tilts: Array) -> Array:
-    """Return the lowest intensity (n_I,) of a grid that overturns each size, (n_R,); NaN where none does."""
+    """Lowest intensity (n_I,) of a grid that overturns each size, (n_R,); NaN where none does."""
     fell = overturned(peak_tilts)
     return np.where(fell.any(axis=1), intensities[fell.argmax(axis=1)], math.nan)
 
@@ -95,7 +95,7 @@ def search_lowest(
 def probe_below(
     start: float, stop: float, lowest: float, *, probes: int, seed: Sequence[int]
 ) -> Search[tuple[float, int]]:
-    """Run intensities drawn at random below the lowest found, until of `probes` none overturns.
+    """Run random intensities below the lowest one, until none of `probes` overturns.
 
     One in each of so many equal parts, and a tenth more, from `start` to the lowest, or to `stop` where it is
     NaN; if some overturn, the lowest of them takes its place, and others are drawn if fewer than `probes`
@@ -122,7 +122,7 @@ def probe_below(
 
 
 def gap_bound(probes: int) -> float:
-    """Return the share of intensities of which none in so many drawn overturns with a chance of 5 %."""
+    """Upper 95 % bound on the overturning share of intensities after that many draws without overturning."""
     return 1.0 - math.pow(1.0 - CONFIDENCE, 1.0 / probes)
 
 
@@ -132,7 +132,7 @@ def run_searches(
     *,
     workers: int | None = None,
 ) -> list[T]:
-    """Run searches side by side, each in one thread; return what each found.
+    """Run searches in parallel, each in one thread, and return their results.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Overturning spectrum: which shaking overturns which size, in three dimensions and by planar analysis."""
+"""Overturning spectrum: sizes and intensities that overturn, in 3D and by planar analysis."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .verification import check_cells, confirm_lowest, planar_contrast
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class OverturningSpectrum(Results, kind=KIND, findings_file="spectrum.json"):
-    """Peak tilts over size and intensity in three dimensions and in two planes, and what overturns.
+    """Peak tilts over size and intensity in 3D and in two planes, and overturning.
 
     Attributes
     ----------
@@ -57,11 +57,11 @@ class OverturningSpectrum(Results, kind=KIND, findings_file="spectrum.json"):
         return maps_of(self.tables, self.facts)
 
     def findings(self) -> Findings:
-        """Findings: overturning, where planar analysis differs, and the reliability of both."""
+        """Findings: overturning, difference of planar analysis, and the reliability of both."""
         return Findings(spectrum_findings(self.maps, self.tables))
 
     def headline(self) -> dict[str, Number]:
-        """Return the shares of cells that overturn, and those where planar analysis says something else."""
+        """Shares of cells that overturn, and of cells where planar analysis differs."""
         every = self.contrast.iloc[-1]
         return {
             "cells": int(every["cells"]),
@@ -159,7 +159,7 @@ def spectrum(
 
 
 def spectrum_of(maps: TiltMaps) -> OverturningSpectrum:
-    """Results of maps that were run: their tables, with cells and lowest intensities verified."""
+    """Results from maps: their tables, with cells and lowest intensities verified."""
     motion, facts = maps.motion, maps.facts()
     sizes = [Cylinder(semidiagonal=size, tan_alpha=maps.tan_alpha) for size in maps.semidiagonals.tolist()]
     doubts = doubts_about(motions=[motion], cylinders=sizes, gravities=[maps.plan.gravity])

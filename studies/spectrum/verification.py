@@ -1,4 +1,4 @@
-"""Verification of a spectrum: 3D beside planar analysis, and cells run again to a tighter tolerance."""
+"""Verification of a spectrum: 3D compared with planar analysis, and cells rerun at a tighter tolerance."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ROUND = (1.0, 2.0, 5.0, 10.0)
 
 
 def planar_contrast(spectrum: TiltMaps) -> pd.DataFrame:
-    """Return the differences of 3D and planar runs, one row for each band of sizes and a last one for all.
+    """Differences of 3D and planar runs, one row per band of sizes and one for all.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def planar_contrast(spectrum: TiltMaps) -> pd.DataFrame:
 
 
 def edge_difference(spectrum: TiltMaps) -> Array:
-    """Return the lowest overturning intensity in 3D less that in the worse plane, (n_R,) [-].
+    """Lowest overturning intensity in 3D less that in the worse plane, (n_R,) [-].
 
     Negative where the planar analysis is unconservative; infinite where only one of them was found to
     overturn, 0 where none was or the two are no further apart than `search_step`.
@@ -61,7 +61,7 @@ def edge_difference(spectrum: TiltMaps) -> Array:
 
 
 def unconservative_from(spectrum: TiltMaps) -> float:
-    """Return the size [m] from which on 3D has the lower overturning intensity at every size; NaN if none."""
+    """Size [m] from which on 3D has the lower overturning intensity at every size; NaN if none."""
     lower = edge_difference(spectrum) < 0.0
     if not lower[-1]:
         return math.nan
@@ -70,7 +70,7 @@ def unconservative_from(spectrum: TiltMaps) -> float:
 
 
 def size_bands(semidiagonals: Array) -> Array:
-    """Return the edges of about six bands of a round width that hold all sizes [m]."""
+    """Edges of about six bands of a round width that hold all sizes [m]."""
     smallest, largest = float(semidiagonals[0]), float(semidiagonals[-1])
     rough = (largest - smallest) / _BANDS or largest
     power = 10.0 ** math.floor(math.log10(rough))
@@ -127,7 +127,7 @@ CELLS = 60  # enough to find one wrong cell in twenty almost surely, in half a s
 
 
 def check_cells(spectrum: TiltMaps) -> pd.DataFrame:
-    """Run randomly chosen cells again as single runs, each beside a copy with a record stronger by a hair.
+    """Rerun random cells as single runs, each with a copy under a minimally stronger record.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def check_cells(spectrum: TiltMaps) -> pd.DataFrame:
 
 
 def confirm_lowest(spectrum: TiltMaps) -> pd.DataFrame:
-    """Run each lowest intensity again, to a tighter tolerance and under a record that differs by a hair.
+    """Rerun each lowest intensity at a tighter tolerance and under a minimally different record.
 
     Returns
     -------

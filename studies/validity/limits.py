@@ -1,4 +1,4 @@
-"""The limits of the model: numbers of tables and maps, and findings, from the measured tables alone."""
+"""Limits of the model, as numbers, maps and findings from the measured tables."""
 
 from __future__ import annotations
 
@@ -48,23 +48,23 @@ _ROUNDING = 1e-9  # relative, of a peak that was stored over alpha
 
 
 def largest(values: pd.Series[float]) -> float:
-    """Largest finite value; NaN where there is none."""
+    """Largest finite value; NaN if none."""
     return float(values[np.isfinite(values)].max())
 
 
 def least(values: pd.Series[float]) -> float:
-    """Least finite value; NaN where there is none."""
+    """Least finite value; NaN if none."""
     return -largest(-values)
 
 
 def quantile_reached(values: pd.Series[float], share: float) -> float:
-    """Value that a share of all does not exceed, infinite ones included; NaN of nothing."""
+    """Quantile of the known values, infinite ones included; NaN without any."""
     known = values.dropna()
     return float(np.quantile(known, share, method="inverted_cdf")) if len(known) else math.nan
 
 
 def limit_of(points: pd.Series[float], holds: pd.Series[bool]) -> tuple[float, float]:
-    """Largest point up to which every point holds, and the least that does not.
+    """Largest point up to which every point holds, and the least that fails.
 
     Several rows may share a point, which holds where all of its rows do. NaN where already the first does
     not hold, and where all do.
@@ -94,7 +94,7 @@ def contrasts(tables: Tables) -> pd.DataFrame:
 
 
 def _ends(table: pd.DataFrame, method: str, column: str = "ratio", name: str = "ratio") -> dict[str, float]:
-    """NAME_least and NAME_largest of a column of a method over the points; NaN without any."""
+    """NAME_least and NAME_largest: range of a column of a method over the points; NaN without any."""
     values = table.loc[table["method"] == method, column]
     return {
         f"{name}_{end}": float(each) for end, each in (("least", values.min()), ("largest", values.max()))
@@ -148,18 +148,18 @@ def cells(tables: Tables) -> pd.DataFrame:
 
 
 def _nine_in_ten(values: pd.Series[float]) -> float:
-    """90th percentile of the known values; NaN of too few."""
+    """90th percentile of the known values; NaN with fewer than `FEWEST`."""
     return quantile_reached(values, _SHARE) if values.count() >= FEWEST else math.nan
 
 
 def _fell(table: pd.DataFrame, name: str) -> Flags:
-    """Whether the peaks of a column, over alpha, are those of overturned runs."""
+    """Whether the peaks of a column, over alpha, are of overturned runs."""
     tilts = (table[name] * np.arctan(table["tan_alpha"])).to_numpy(dtype=np.float64)
     return overturned(tilts * (1.0 + _ROUNDING))
 
 
 def _changes(table: pd.DataFrame, name: str) -> pd.Series[float]:
-    """Logarithms of the peaks of a column over those of the recess model, see `Pairs.log_ratios`."""
+    """Log ratios of the peaks of a column to those of the recess model, see `Pairs.log_ratios`."""
     peaks, recess = (table[each].to_numpy(dtype=np.float64) for each in (name, RECESS))
     return pd.Series(Pairs(peaks, recess, _fell(table, name), _fell(table, RECESS)).log_ratios())
 
@@ -190,7 +190,7 @@ def needs(tables: Tables) -> pd.DataFrame:
 
 
 def vertical(tables: Tables) -> pd.DataFrame:
-    """Change of the peak by the vertical component of El Centro, beside a record 1 % stronger.
+    """Change of the peak due to the vertical component of El Centro, compared with a record 1 % stronger.
 
     Returns
     -------
@@ -249,7 +249,7 @@ def early(tables: Tables) -> int:
 
 
 def model_difference(table: pd.DataFrame) -> pd.Series[float]:
-    """Difference of the angles of turn of the recess and flat models in the release of each row.
+    """Difference in angle of turn between the recess and flat-ground models for the release of each row.
 
     NaN where there is one of them alone.
     """
@@ -259,7 +259,7 @@ def model_difference(table: pd.DataFrame) -> pd.Series[float]:
 
 
 def _confirmations(table: pd.DataFrame) -> dict[str, int]:
-    """Runs whose pass is resolved, their releases, and those that confirm and that contradict their model.
+    """Runs with a resolved pass: releases, and numbers that confirm and contradict their model.
 
     One that failed decides nothing: it has said so itself. Where there is one model it is confirmed by what
     does not contradict it.
@@ -279,7 +279,7 @@ def _confirmations(table: pd.DataFrame) -> dict[str, int]:
 
 
 def soft_contacts(tables: Tables) -> pd.DataFrame:
-    """Runs with other contact settings: failed, ratio of the peaks, loss; NaN where one failed."""
+    """Runs with other contact settings: failures, peak ratio, loss; NaN after a failure."""
     table = tables["contact"]
     failed = table[["free_outcome", "outcome"]].isin(NO_PEAK).any(axis="columns")
     known = table.assign(ratio=table["peak"] / table["recess_peak"])[["ratio", "loss"]].mask(failed)
@@ -287,7 +287,7 @@ def soft_contacts(tables: Tables) -> pd.DataFrame:
 
 
 def damping(tables: Tables) -> pd.DataFrame:
-    """Least and largest ratio of the peak, and the largest loss, by the damping of contact."""
+    """Least and largest peak ratio, and largest loss, by contact damping."""
     by_damping = soft_contacts(tables).groupby("damping", as_index=False)
     return by_damping.agg(
         points=("failed", "size"),
@@ -299,7 +299,7 @@ def damping(tables: Tables) -> pd.DataFrame:
 
 
 def limits_of(tables: Tables, structure: Structure) -> pd.DataFrame:
-    """Every number of the findings, of `vertical` and of `traces`: limit, number, value."""
+    """All numbers of the findings, of `vertical` and of `traces`: limit, number, value."""
     models = traces(tables)
     models.index = models.pop("support") + "_" + models.pop("reference_support")
     numbers: dict[str, Mapping[Any, Any]] = {
@@ -340,7 +340,7 @@ def _scope(structure: Structure) -> Iterator[Finding]:
 
 
 def _model(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
-    """Verdict on the reduced model in an ideal recess, by an engine in one.
+    """Verdict on the reduced model by an engine in an ideal recess.
 
     It is contradicted where one release is that of another motion, or where the median ratio of the peaks at
     one point is known to be beyond the margin; established where the median is known to be within the margin
@@ -391,7 +391,7 @@ def _requirements(tables: Tables) -> Iterator[Finding]:
 
 
 def _stiffness(table: pd.DataFrame) -> Finding:
-    """Finding on the largest softness of contact (time constant times p) that does not change the peak."""
+    """Finding on the largest contact softness (time constant times p) that leaves the peak unchanged."""
     known = table[~table["failed"]]
     off = (known["ratio"] - 1.0).abs()
     # one contact is one point, though its softness differs by slenderness in the third digit

@@ -52,7 +52,7 @@ _MAXIMUM = 1.0  # code of a maximum in the fourth column of `Trace.extrema`
 
 
 def needs_of(trace: Trace) -> dict[str, float]:
-    """Needs of the recess model of ground and recess in a run.
+    """Demands of the recess model on ground and recess in a run.
 
     friction, least_normal [weights], moment, the restraining moment over weight and base radius; NaN where it
     does not move or overturns. In a frame of base or top, whichever asks for more, over the weight that it
@@ -71,13 +71,13 @@ def needs_of(trace: Trace) -> dict[str, float]:
 
 
 def loss_of(trace: Trace) -> float:
-    """Energy that contact took over the largest that was reached; NaN where nothing moved."""
+    """Energy lost in contact over the largest energy reached; NaN without motion."""
     largest = float(trace.energy.max())
     return -float(trace.energy_error[-1]) / largest if largest > 0.0 else math.nan
 
 
 def next_maximum(trace: Trace) -> tuple[float, float]:
-    """Time and rolling angle from the release, a tilt maximum, to the next; NaN if there is none."""
+    """Time and rolling angle from the release to the next tilt maximum; NaN if there is none."""
     maxima = trace.extrema[trace.extrema[:, 3] == _MAXIMUM]
     if len(maxima) < 2:
         return math.nan, math.nan
@@ -184,7 +184,7 @@ _RTOL = 1e-7
 def measure_peaks(
     motion: str, tan_alpha: float, semidiagonal: float, intensities: Sequence[float], structure: Structure
 ) -> Iterator[Row]:
-    """One row for each intensity that an earthquake reaches, see `LARGEST_PEAK`.
+    """One row for each plausible intensity, see `LARGEST_PEAK`.
 
     The columns: motion, tan_alpha, semidiagonal [m], intensity; peak tilt over alpha, pi/2 over alpha if
     overturned, of the recess model, of its perturbed copy under a record stronger by 1 %, of the flat-ground
@@ -218,7 +218,7 @@ def measure_records(
     time_step: float,
     structure: Structure,
 ) -> Iterator[Row]:
-    """A row for each method.
+    """One row for each method.
 
     The columns: motion, tan_alpha, semidiagonal [m], intensity, method, peak over alpha, outcome;
     contact_time with walls [s] and loss, see `loss_of`. The methods: the reduced models (one with a tendon),
@@ -246,12 +246,12 @@ def measure_records(
 
 
 def _models(structure: Structure) -> list[Support]:
-    """Supports of which there is a reduced model of a structure."""
+    """Supports with a reduced model of the structure."""
     return [each for each in MODELLED if structure.tendon is None or each.guided]
 
 
 def _supports(structure: Structure) -> list[Support]:
-    """Supports that the engine has; no walls take a slab."""
+    """Supports of the engine; a slab excludes walls."""
     known = [each for each in SUPPORTS.values() if each in find_engine(DEFAULT_ENGINE).supports]
     return [each for each in known if not (structure.slab_mass_ratio and each.walls)]
 
@@ -296,7 +296,7 @@ STRONG, _LENGTH = 2.0, 10.0
 def measure_contact(
     tan_alpha: float, time_constant: float, damping: float, structure: Structure
 ) -> Iterator[Row]:
-    """A row: what free response in a recess loses, and the peak tilt under El Centro.
+    """One row: loss in free response in a recess, and peak tilt under El Centro.
 
     The columns: tan_alpha, time_constant [s] in which contact removes a normal velocity, damping ratio,
     softness, the time constant times the frequency parameter p; loss of energy per pass over the energy of
@@ -334,7 +334,7 @@ def measure_rings(
     length: float,
     structure: Structure,
 ) -> Iterator[Row]:
-    """A row for free response or El Centro; none where the walls leave no room for the release.
+    """One row for free response or El Centro; none if the walls are too narrow for the release.
 
     The columns: motion, tan_alpha, turn [rad], support, clearance [b], inclination [rad] (0 for alpha) and
     friction of the walls, those of `losses`; recess_peak, and halved_peak, that of the same ring at half the
@@ -364,7 +364,7 @@ def measure_rings(
 
 
 def has_room(case: Case, run: Run) -> bool:
-    """Whether the release is outside of the walls."""
+    """Whether the release is clear of the walls."""
     _, ring = take_ring(run.settings, run.support, case.cylinder.tan_alpha)
     if ring is None or case.initial is None:
         return True
@@ -372,7 +372,7 @@ def has_room(case: Case, run: Run) -> bool:
 
 
 def losses(trace: Trace) -> Row:
-    """Losses of a run in a recess of any kind.
+    """Energy losses of a run in a recess with or without clearance.
 
     outcome; first_contact with a wall (inf where there is none) and contact_time [s]; passes; loss of energy,
     see `loss_of`; rolled_out and at_end, distance from O of the place on which the cylinder would come down,
@@ -393,7 +393,7 @@ def losses(trace: Trace) -> Row:
 
 
 def _rolled_out(trace: Trace) -> FloatArray:
-    """Distance from O of the place to which a cylinder would come down, while it is tilted [b].
+    """Distance from O of the landing place of a cylinder, while it is tilted [b].
 
     The contact point less a radius in the direction of the lean: in the recess model that is O.
     """
@@ -418,7 +418,7 @@ PARTS: Mapping[str, Callable[..., Iterator[Row]]] = {
 
 
 def tasks_of(extent: Extent) -> list[Task]:
-    """Tasks of all parts; with a slab of those without walls."""
+    """Tasks of all parts; with a slab only of parts without walls."""
     records, structure = record_names(extent.members), extent.structure
     none = dict.fromkeys(("clearance", "inclination", "friction"), math.nan)
     walls = [
@@ -467,5 +467,5 @@ def _points(names: Sequence[str], points: Iterable[tuple[float | str, ...]]) -> 
 
 
 def _grid(**axes: Iterable[float | str]) -> list[Point]:
-    """Points at all combinations of values, the last name the fastest."""
+    """Points of the Cartesian product of values, the last name varying fastest."""
     return _points(tuple(axes), itertools.product(*axes.values()))

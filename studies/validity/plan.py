@@ -1,4 +1,4 @@
-"""Plan of the report on validity: parts, extent and resolution of maps, releases and ground motions."""
+"""Plan of the validity report: parts, extent and resolution of maps, releases and ground motions."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Ring:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Extent:
-    """The points at which each part measures.
+    """Measured points of each part.
 
     Attributes
     ----------
@@ -167,7 +167,7 @@ class Extent:
 
 
 def _digits(value: float) -> float:
-    """Number that tables can show."""
+    """Number rounded to the digits that tables show."""
     return float(f"{value:.3g}")
 
 
@@ -306,7 +306,7 @@ def record_names(members: int) -> list[str]:
 
 
 def source_of(name: str) -> str:
-    """Source of the motions of which one has this name, in words."""
+    """Source of the motion of this name and of its group, in words."""
     return "FEMA P-695 far-field records" if name.startswith("record") else "synthetic records"
 
 

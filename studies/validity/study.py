@@ -1,4 +1,4 @@
-"""The measurements of all parts: side by side, kept as they are finished, and never repeated."""
+"""Measurements of all parts, run in parallel and cached."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Validity(Results, kind=KIND):
         return findings_of(self.tables, self.structure)
 
     def headline(self) -> dict[str, Number]:
-        """Ratios of the peaks of the engine to those of the model, over the records."""
+        """Ratios of the engine's peaks to the model's, over the records."""
         by_method = dict(iter(contrasts(self.tables).groupby("method")))
         return {
             f"peak {support.place} over that of the model, {what}": float(by_method[support][name].agg(end))
@@ -127,7 +127,7 @@ def measure_all(
 
 @dataclass(frozen=True)
 class MeasureStudy(Study[Task, dict[str, pd.DataFrame]]):
-    """Measurements of the parts, task by task; its results are the table of each part."""
+    """Measurements of the parts as a study; its results are the table of each part."""
 
     kind: ClassVar[str] = KIND
     measured: Sequence[Task]
@@ -159,7 +159,7 @@ class MeasureStudy(Study[Task, dict[str, pd.DataFrame]]):
 
 
 def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
-    """Results of what was measured here."""
+    """Results from the measured tables."""
     stated = asdict(extent.structure)
     source = source_of(record_names(1)[0])
     terms = {name: value for name, value in stated.items() if value}

@@ -1,1 +1,1 @@
-"""What writes reports/published/benchmark: fifteen cases and their certified references."""
+"""Writer of reports/published/benchmark: fifteen cases and their certified references."""

@@ -36,7 +36,7 @@ def cases(names: list[str], only: list[str]) -> None:
 
 
 def mistakes(names: list[str], only: list[str]) -> None:
-    """Write which mistake of a code which case sees."""
+    """Write the table of planted mistakes by case."""
     from benchmark_files.planted import table
     from benchmark_files.write import PUBLISHED
 
@@ -61,7 +61,7 @@ def results(names: list[str], only: list[str]) -> None:
 
 
 def main() -> None:
-    """Do what is asked for."""
+    """Run the named parts."""
     parser = argparse.ArgumentParser(prog="python tests/benchmark_files", description=__doc__)
     parser.add_argument("part", choices=("cases", "mistakes", "results"))
     parser.add_argument("names", nargs="*", help="default: all")

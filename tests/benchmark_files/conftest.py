@@ -1,4 +1,4 @@
-"""The published folder, unpacked away from the project, and its check asked there.
+"""Fixtures: the unpacked published folder, and its check.py.
 
 `test_files` starts the programs as anybody would; the many judgements are made by the same `main` in this
 process, since most of the time of a start goes into loading numpy.
@@ -41,7 +41,7 @@ Judge = Callable[..., Judged]
 
 @pytest.fixture(scope="session")
 def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder as its archive holds it, away from everything else."""
+    """The published folder as its archive, away from the project."""
     place = tmp_path_factory.mktemp("copied")
     runpy.run_path(str(PUBLISHED.parent / "remake.py"))["archive"](place / "benchmark.zip")
     shutil.unpack_archive(place / "benchmark.zip", place)
@@ -50,7 +50,7 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def check(copied: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
-    """check.py of that folder, among its cases and one of a single run."""
+    """Module check.py of that folder, with its cases and a one-run case."""
     folder = tmp_path_factory.mktemp("judging")
     shutil.copy(copied / "check.py", folder)
     shutil.copytree(copied / "external", folder / "external")
@@ -71,7 +71,7 @@ def check(copied: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mo
 
 @pytest.fixture
 def judge(check: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Judge:
-    """Return what check.py says of a trajectory, given as tables or as the text of a file."""
+    """Judgement of check.py on a trajectory, given as tables or as file text."""
 
     def run(case: str, given: Mapping[str, Table] | str, titles: Mapping[str, str] | None = None) -> Judged:
         path, out = tmp_path / "mine.csv", tmp_path / "result.json"

@@ -1,4 +1,4 @@
-"""The fifteen cases: bodies, starts, motions, and what is asked of a trajectory.
+"""The fifteen cases: bodies, starts, motions, and criteria.
 
 The bounds mean the same everywhere: a body 1 % too large fails in every free motion; "good" is a tenth of
 "pass", and "exact" what only a converged solution of the same equations reaches. Under shaking the bound is
@@ -67,18 +67,18 @@ class BenchmarkRun:
 
     @property
     def slides(self) -> bool:
-        """Whether it slides, and does nothing else."""
+        """Whether the body only slides."""
         return "slide_level" in self.levels
 
     @property
     def model(self) -> Literal["recess", "flat"]:
-        """The support under which the reference is computed."""
+        """Support of the reference model."""
         return "recess" if self.support == "recess" else "flat"
 
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """One case: runs, the spacing of its reference [s], and what is asked."""
+    """One case: runs, sample step of its reference [s], and criteria."""
 
     name: str
     title: str
@@ -91,20 +91,20 @@ class Definition:
 
 
 def quantity(name: str, unit: str, size: float, exact: float, **more: Any) -> Criterion:
-    """Return the criterion of a scalar."""
+    """Criterion of a scalar."""
     bounds = {"pass": size, "good": 0.1 * size, "exact": exact}
     return {"name": name, "kind": "quantity", "unit": unit, **bounds, **more}
 
 
 def trace(name: str, end: float, exact: float, *, start: float = 0.0, **more: Any) -> Criterion:
-    """Return the criterion of a trace between two times [s]."""
+    """Criterion of a trace between two times [s]."""
     unit = "b" if name == "path" else "alpha"
     bounds = {"pass": 0.003, "good": 0.0003, "exact": exact}
     return {"name": name, "kind": "trace", "unit": unit, "window": [start, end], **bounds, **more}
 
 
 def lean_and_tilt(end: float, exact: float, **more: Any) -> tuple[Criterion, ...]:
-    """Return the criteria of both; a file with the tilt alone tells one of them."""
+    """Criteria of tilt vector and tilt; a file with the tilt only is judged on one."""
     return trace("tilt", end, exact, **more), trace("lean", end, exact, **more)
 
 
@@ -114,14 +114,14 @@ AZIMUTH = 0.3  # of the releases [rad]: along no axis, so that mistaken axes sho
 
 
 def release(cylinder: Cylinder, spin: float) -> InitialState:
-    """Return a release from rest in tilt at alpha/2."""
+    """Release from rest in tilt at alpha/2."""
     return InitialState(0.5 * cylinder.alpha, 0.0, AZIMUTH, spin)
 
 
 def returns(
     name: str, title: str, runs: Iterable[BenchmarkRun], end: float, exact: float, **more: Any
 ) -> Definition:
-    """Return the angle of turn and the period after a release, and the motion until then."""
+    """Angle of turn and period after a release, up to the next maximum."""
     asked = quantity("turn_1", "rad", 0.01, 1e-6), quantity("period_1", "relative", 0.002, 1e-6)
     needed = ("turn_1", "period_1", "tilt")
     return Definition(name, title, tuple(runs), 0.002, (*asked, *lean_and_tilt(end, exact)), needed, **more)
@@ -137,7 +137,7 @@ def turns(name: str, support: Support, words: str) -> Definition:
 
 
 def disc() -> Definition:
-    """Return a thick disc that rolls fast, whose axial inertia and gyroscopic term decide where it leans."""
+    """Thick disc that rolls fast, dominated by axial inertia and gyroscopic term."""
     body = Cylinder.from_dimensions(base_radius=1.0, height=0.6)
     start = InitialState(0.3 * body.alpha, 0.0, AZIMUTH, 3.0)
     runs = (BenchmarkRun(support, body, support, 4.0, initial=start, friction=2.0) for support in SUPPORTS)
@@ -145,7 +145,7 @@ def disc() -> Definition:
 
 
 def steady() -> Definition:
-    """Return the steady wobble."""
+    """Steady wobble."""
     rate = float(steady_wobble_rate(SQUAT, 0.3 * SQUAT.alpha, gravity=G))
     start = InitialState(0.3 * SQUAT.alpha, 0.0, AZIMUTH, rate)
     length = round(100.5 * 2.0 * math.pi / rate, 2)
@@ -156,7 +156,7 @@ def steady() -> Definition:
 
 
 def uplift() -> Definition:
-    """Return the uplift on a ramp of the ground acceleration, in 24 directions."""
+    """Uplift on a ramp of the ground acceleration, in 24 directions."""
     body = Cylinder(semidiagonal=2.0, tan_alpha=0.3)
     rate = G * body.tan_alpha  # [m/s^3]: it lifts after one second
     runs = []
@@ -176,7 +176,7 @@ def uplift() -> Definition:
 
 
 def near_upright() -> Definition:
-    """Return passes that become closer and closer."""
+    """Passes with decreasing minimum tilt."""
     runs = (
         BenchmarkRun(f"spin-{spin:g}", PIER, "recess", 6.0, initial=release(PIER, spin))
         for spin in (0.1, 0.01, 0.001)
@@ -185,7 +185,7 @@ def near_upright() -> Definition:
 
 
 def slip() -> Definition:
-    """Return the onset of slip on a ramp of the ground acceleration, with and without a vertical one."""
+    """Onset of slip under a ramp of ground acceleration, with and without a vertical ramp."""
     body = Cylinder(semidiagonal=1.0, tan_alpha=0.4)
     ramp, vertical = 2.0, 1.0  # [m/s^3]
 
@@ -222,7 +222,7 @@ def scales() -> Definition:
 
 
 def el_centro() -> Definition:
-    """Return a pier under twice El Centro, up to where perturbed copies no longer agree."""
+    """Pier under twice El Centro, up to the divergence of perturbed copies."""
     record = el_centro_1940().scaled(2.0)
     # the ends are those of the agreement with a copy whose record is 0.1 % stronger
     ends = {"recess": 26.0, "flat": 22.0}
@@ -240,7 +240,7 @@ def el_centro() -> Definition:
 
 
 def records() -> Definition:
-    """Return 22 synthetic ground motions, of which only the distribution of the peaks is compared."""
+    """Ensemble of 22 synthetic ground motions, compared by the distribution of peaks only."""
     runs = []
     for index in range(22):
         samples = noise(Random(1940 + index), 0.02, 20.0, 2)
@@ -255,7 +255,7 @@ def records() -> Definition:
 
 
 def energy() -> Definition:
-    """Return 100 passes without loss."""
+    """Energy conservation over 100 passes."""
     start = release(SQUAT, 0.5)
     runs = tuple(BenchmarkRun(support, SQUAT, support, 152.0, initial=start) for support in SUPPORTS)
     criteria = (
@@ -297,7 +297,7 @@ def tendon() -> Definition:
 
 
 def impact() -> Definition:
-    """One sine in one direction: each closing of the base is an impact that keeps the moment of momentum."""
+    """One sine in one direction: each impact conserves the moment of momentum."""
     time = 0.005 * np.arange(161)
     push = np.column_stack([0.65 * G * np.sin(2.0 * math.pi * time / 0.8), np.zeros(161)])
     motion = GroundMotion(np.round(push, 6), 0.005)  # as published
@@ -313,7 +313,7 @@ def impact() -> Definition:
 
 
 def slide(name: str, title: str, motion: GroundMotion, length: float, *asked: Criterion) -> Definition:
-    """Return a slide from rest under a motion of the ground, at 0.6 and at 0.9 of b/h."""
+    """Slide from rest under a motion of the ground, at 0.6 and at 0.9 of b/h."""
     more: dict[str, Any] = {"motion": motion, "levels": {"slide_level": 1e-3}}
     runs = tuple(
         BenchmarkRun(f"friction-{friction:g}", SQUAT, "flat", length, friction=friction, **more)
@@ -325,7 +325,7 @@ def slide(name: str, title: str, motion: GroundMotion, length: float, *asked: Cr
 
 
 def slide_on_a_line() -> Definition:
-    """Return a slide under a rectangular pulse of 0.6 g, which is known in closed form."""
+    """Slide under a rectangular pulse of 0.6 g, with a closed-form solution."""
     push = 0.6 * G * np.array([math.cos(AZIMUTH), math.sin(AZIMUTH)])
     motion = GroundMotion(np.vstack([push, push]), 0.5)
     begin = quantity("slide_time", "s", 0.003, 1e-5)
@@ -333,14 +333,14 @@ def slide_on_a_line() -> Definition:
 
 
 def slide_on_a_curve() -> Definition:
-    """Return a slide over ground that circles once a second with 0.6 g, and stops after three seconds."""
+    """Slide on ground that moves in a circle once a second with 0.6 g, and stops after three seconds."""
     turn = AZIMUTH + 2.0 * math.pi * 0.01 * np.arange(301)
     motion = GroundMotion(np.round(0.6 * G * np.column_stack([np.cos(turn), np.sin(turn)]), 6), 0.01)
     return slide("slide-curve", "A slide along a curve", motion, 3.6)
 
 
 def definitions() -> tuple[Definition, ...]:
-    """Return the fifteen cases, in the order of the page."""
+    """Fifteen cases, in the order of the page."""
     return (
         turns("turn-flat", "flat", "on flat ground"),
         turns("turn-recess", "recess", "in a recess"),

@@ -1,4 +1,4 @@
-"""Results of the engines: each case that an engine can do, judged by check.py like anybody's.
+"""Engine results: each possible case, judged by check.py like any submission.
 
 `results/NAME` holds one file a case and about.json: code, version, settings, time step, processor time of a
 step, what it cannot do or was left out and why, until when the runs of each case could be extrapolated, and
@@ -34,7 +34,7 @@ _LONG = 60.0  # [s] of all runs of a case: those with a finer step stay below
 
 
 def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = ()) -> None:
-    """Run the cases of a benchmark folder, the shortest first, and write what check.py says of them."""
+    """Run the cases of a benchmark folder, shortest first, and write the judgements of check.py."""
     target = folder / "results" / f"{engine}-{variant}"
     target.mkdir(parents=True, exist_ok=True)
     costs: list[float] = []
@@ -97,7 +97,7 @@ def _step_in_words(variant: str) -> str:
 
 
 def _extrapolated_until(trace: Trace) -> float:
-    """Return the time [s] from which on a run is the finest of three: no halving brought it closer."""
+    """Time [s] from which a run is its finest of three, as no halving improved it."""
     return next((fact.duration for fact in trace.facts if fact.code == "extrapolated"), 0.0)
 
 

@@ -1,4 +1,4 @@
-"""Rocking in one plane whose base closes by the moment of momentum: vectors from the corner that turns.
+"""Planar rocking with impacts that conserve the moment of momentum, in vectors from the pivot corner.
 
 State are the vector from that corner to the mass centre and the rate of turn about y. No angle is integrated
 and no coefficient of restitution enters: at a closing the moment of momentum about the next corner is kept.
@@ -65,7 +65,7 @@ def rocked(run: BenchmarkRun, times: Array) -> Array:
 
 
 def maximum_after(tilt: float, run: BenchmarkRun, closings: int) -> float:
-    """Largest tilt after so many closings on still ground, from that before them [rad]: a closed form."""
+    """Largest tilt after so many impacts on still ground, from the one before them [rad]: a closed form."""
     body = body_of(run.cylinder, G)
     alpha = body.alpha
     sine = math.sin(alpha) ** 2 / (body.I1 / (body.b**2 + body.h**2) + 1.0)

@@ -1,4 +1,4 @@
-"""Which mistake of a code which case sees: the second formulation with one thing wrong."""
+"""Planted mistakes by case: the second formulation with one error each."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Change = Callable[[BenchmarkRun], BenchmarkRun]
 def _of_body(
     *, radius: float = 1.0, height: float = 1.0, transverse: float = 1.0, axial: float = 1.0
 ) -> Change:
-    """Return a change of base radius, height of the mass centre and inertias by factors."""
+    """Change of base radius, mass centre height and inertias by factors."""
 
     def changed(run: BenchmarkRun) -> BenchmarkRun:
         body = body_of(run.cylinder, G)
@@ -87,7 +87,7 @@ def check() -> ModuleType:
 
 
 def slid(run: BenchmarkRun, spacing: float) -> dict[str, Array]:
-    """Columns of a cylinder that slides."""
+    """Columns of a sliding cylinder."""
     time = spacing * np.arange(round(run.duration / spacing) + 1)
     x, y = integrated(run, time).T
     still, height = np.zeros_like(time), np.full_like(time, run.cylinder.mass_centre_height)
@@ -95,7 +95,7 @@ def slid(run: BenchmarkRun, spacing: float) -> dict[str, Array]:
 
 
 def judged(definition: Definition, mistake: str) -> tuple[str, float] | None:
-    """Return verdict, and largest error over the bound of a pass; None where the mistake changes no run."""
+    """Verdict, and largest error over its pass bound; None if the mistake changes no run."""
     changed = {run.name: MISTAKES[mistake](run) for run in definition.runs}
     gyroscopic = 0.0 if mistake == WITHOUT_GYROSCOPIC_TERM else 1.0
     if gyroscopic and all(changed[run.name] == run for run in definition.runs):
@@ -116,7 +116,7 @@ def judged(definition: Definition, mistake: str) -> tuple[str, float] | None:
 
 
 def table() -> str:
-    """Return the page: case by mistake."""
+    """Page: case by mistake."""
     titles = ["case", *MISTAKES]
     lines = [" | ".join(titles), " | ".join("---" for _ in titles)]
     for definition in definitions():

@@ -1,4 +1,4 @@
-"""References of the cases: each number by two formulations that share nothing, and how far they are apart.
+"""References of the cases: each number by two independent formulations, with their difference.
 
 The first is the reduced model, in angles and momenta, by its own integrator; the second is `second`, and
 where there is one a closed form or a quadrature is the third. A bound is ten times what they differ by.
@@ -35,7 +35,7 @@ _REACH = 5  # samples on each side of a root
 
 
 class Reference(NamedTuple):
-    """What stands in reference.json and reference.csv."""
+    """Contents of reference.json and reference.csv."""
 
     quantities: list[dict[str, Any]]
     columns: dict[str, Array]
@@ -86,7 +86,7 @@ def _paths(definition: Definition, run: BenchmarkRun) -> tuple[Array, Array, Arr
 
 
 def _of_slide(name: str, run: BenchmarkRun, times: Array, model: Array, other: Array) -> dict[str, float]:
-    """Return a quantity of a slide by each way in which it is known."""
+    """Quantity of a slide by each known method."""
     exact, known = closed(name, run), {}
     if exact is not None:
         known[SLIDING] = exact
@@ -109,7 +109,7 @@ def _both(definition: Definition, run: BenchmarkRun) -> tuple[Sampled, Sampled]:
 
 
 def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
-    """Return a quantity by roots of polynomials through the samples."""
+    """Quantity from roots of polynomials through the samples."""
     kind, _, digits = name.rpartition("_")
     time, alpha = trace.time, run.cylinder.alpha
     if kind == "kept":
@@ -137,7 +137,7 @@ def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
 
 
 def energy_kept(before: float, after: float, alpha: float) -> float:
-    """Energy after a closing over that before it, from the largest tilts beside it [alpha]."""
+    """Energy ratio across an impact, from the adjacent tilt maxima [alpha]."""
     first, second = (math.cos(alpha - alpha * tilt) - math.cos(alpha) for tilt in (before, after))
     return second / first
 
@@ -157,7 +157,7 @@ def _value(time: Array, values: Array, at: float) -> float:
 
 
 def _closed(name: str, run: BenchmarkRun) -> dict[str, float]:
-    """Return what is known without any integration."""
+    """Closed-form values, without integration."""
     kind = name.rpartition("_")[0]
     if kind == "revolutions":
         assert run.initial is not None
@@ -184,7 +184,7 @@ def _after_impact(name: str, run: BenchmarkRun, trace: Sampled) -> dict[str, flo
 
 
 def _quantity(name: str, run: str, by: dict[str, float]) -> dict[str, Any]:
-    """Return the entry of reference.json; the first way that is known gives the value."""
+    """Entry of reference.json; the most exact method gives the value."""
     values = list(by.values())
     apart = max(values) - min(values)
     unit = {"turn": "rad", "maximum": "alpha", "kept": "share"}.get(name.rpartition("_")[0], "s")
@@ -203,7 +203,7 @@ def _columns(
     traces: dict[str, tuple[Sampled, Sampled]],
     paths: dict[str, tuple[Array, Array, Array]],
 ) -> tuple[dict[str, Array], dict[str, float]]:
-    """Return the table of reference.csv, and how well its columns are known."""
+    """Table of reference.csv, with the accuracy of its columns."""
     named = definition.runs
     shared = any(run.turned for run in named) or any(run.time_unit != 1.0 for run in named)
     count = round(definition.end / definition.step) + 1 if definition.end else None
@@ -236,7 +236,7 @@ def _columns(
 
 
 def _peak(run: BenchmarkRun) -> float:
-    """The largest tilt by the second formulation [rad], over still ground after the record, too."""
+    """Peak tilt by the second formulation [rad], still ground after the record included."""
     samples = sampled(run, 0.005, run.duration + 10.0, rtol=1e-12)
     tilt = CubicHermiteSpline(samples.time, samples.tilt, samples.tilt_rate)
     turns = tilt.derivative().roots(extrapolate=False)
@@ -244,7 +244,7 @@ def _peak(run: BenchmarkRun) -> float:
 
 
 def _peaks(definition: Definition) -> Reference:
-    """Return the peak tilts of the records; for a sensitive record no bound can be small."""
+    """Peak tilts under the records; a sensitive record has a wide bound."""
     quantities, rows = [], []
     for index, run in enumerate(definition.runs):
         assert run.motion is not None

@@ -27,7 +27,7 @@ EARLY = 3e-4  # of the shortest time scale: of the series that follows an uplift
 
 
 class Sampled(NamedTuple):
-    """Samples of one motion, (n,) each; at rest the tilt is 0."""
+    """Samples of one motion, (n,) each; tilt 0 at rest."""
 
     time: Array
     tilt: Array
@@ -39,7 +39,7 @@ class Sampled(NamedTuple):
 def advance(
     P: Array, p: float, y: Array, length: float, a: Array, slope: Array, rtol: float, first: float
 ) -> tuple[Array, float]:
-    """Return the state after `length` under a + slope t, and the size of a next step."""
+    """State after `length` under a + slope t, and the size of a next step."""
     at, size = 0.0, first
     while at < length:
         tried = min(size, length - at)
@@ -56,7 +56,7 @@ def advance(
 def sampled(
     run: BenchmarkRun, spacing: float, end: float, *, rtol: float = 1e-13, gyroscopic: float = 1.0
 ) -> Sampled:
-    """Integrate a run, perhaps without its gyroscopic term, and return samples that are `spacing` apart."""
+    """Samples of a run at a step of `spacing`, optionally without its gyroscopic term."""
     times = spacing * np.arange(round(end / spacing) + 1)
     if run.closes:
         return Sampled(times, *rocked(run, times).T)
@@ -104,7 +104,7 @@ def sampled(
 def _lifted(
     P: Array, p2: float, y: Array, a: Array, slope: Array, length: float
 ) -> tuple[Array, bool, float]:
-    """Return the state at an uplift within `length`, whether there is one, and when."""
+    """State at an uplift within `length`, whether there is one, and its time."""
     jump = excess(P, a) > 0.0
     if not jump and excess(P, a + slope * length) <= 0.0:
         return y, False, length

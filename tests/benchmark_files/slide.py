@@ -29,7 +29,7 @@ def modelled(run: BenchmarkRun, times: Array) -> Array:
 
 
 def integrated(run: BenchmarkRun, times: Array) -> Array:
-    """The same by Dormand and Prince, in the components of velocity; at rest under still ground."""
+    """Path by Dormand and Prince in velocity components; at rest on still ground."""
     assert run.motion is not None
     record, dt = np.array(run.motion.acceleration), run.motion.time_step
     record = np.pad(record, ((0, 0), (0, 3 - record.shape[1])))
@@ -67,7 +67,7 @@ def integrated(run: BenchmarkRun, times: Array) -> Array:
 
 
 def closed(name: str, run: BenchmarkRun) -> float | None:
-    """Closed form of a quantity under a ramp or a pulse of the ground in one direction; None elsewhere."""
+    """Closed form of a quantity under a one-directional ramp or pulse; None otherwise."""
     assert run.motion is not None
     if len(run.motion.acceleration) > 2:
         return None

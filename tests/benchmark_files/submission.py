@@ -1,4 +1,4 @@
-"""A trajectory file of any model of ours, from what case.json says and nothing else."""
+"""Trajectory file of any of our models, from case.json alone."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Table = dict[str, Array]
 
 
 def cases_of(folder: Path) -> dict[str, tuple[Case, str]]:
-    """Return case and support of each run of a folder; "flat" where the motion is the same on both."""
+    """Case and support of each run of a folder; "flat" if both supports give one motion."""
     given = json.loads((folder / "case.json").read_text())
     cases = {}
     for run in given["runs"]:
@@ -50,7 +50,7 @@ def cases_of(folder: Path) -> dict[str, tuple[Case, str]]:
 
 
 def motion_of(given: Mapping[str, Any], folder: Path) -> GroundMotion | None:
-    """Return the ground motion of a run."""
+    """Ground motion of a run."""
     if given["kind"] == "still":
         return None
     if given["kind"] == "samples":
@@ -64,13 +64,13 @@ def motion_of(given: Mapping[str, Any], folder: Path) -> GroundMotion | None:
 
 
 def tilt_and_azimuth(trace: Trace) -> Table:
-    """Return the columns of a file with tilt and azimuth, and the place."""
+    """File columns with tilt and azimuth, and the position."""
     place = dict(zip("xyz", trace.centre_of_mass.T, strict=True))
     return {"time": trace.time, "tilt": trace.tilt, "azimuth": np.nan_to_num(trace.rolling_angle), **place}
 
 
 def quaternions(trace: Trace) -> Table:
-    """Return the columns of a file with quaternions: a turn by the tilt, after one by the twist."""
+    """File columns with quaternions: a turn by the tilt, after one by the twist."""
     half, azimuth, twist = 0.5 * trace.tilt, np.nan_to_num(trace.rolling_angle), 0.5 * trace.twist
     lean = -np.sin(azimuth), np.cos(azimuth)
     s, c = np.sin(half), np.cos(half)
@@ -84,12 +84,12 @@ def quaternions(trace: Trace) -> Table:
 
 
 def positions(trace: Trace) -> Table:
-    """Return the columns of a file with the mass centre alone."""
+    """File columns with the mass centre only."""
     return {"time": trace.time, **dict(zip("xyz", trace.centre_of_mass.T, strict=True))}
 
 
 def submit(tables: Mapping[str, Table], path: Path, *, titles: Mapping[str, str] | None = None) -> Path:
-    """Write one file with a column `run` of several tables, each name under a title of its own."""
+    """Write one file from several tables, with a column `run` and custom titles."""
     lines: list[str] = []
     for run, table in tables.items():
         if not lines:
@@ -103,5 +103,5 @@ def submit(tables: Mapping[str, Table], path: Path, *, titles: Mapping[str, str]
 
 
 def spacing(case: Case, samples: int = 2000) -> float:
-    """Return a sample step that suits the size of the body and the length of its run [s]."""
+    """Sample step that suits the size of the body and the length of its run [s]."""
     return min(0.01 * math.sqrt(case.cylinder.semidiagonal), case.length / samples)

@@ -1,4 +1,4 @@
-"""check.py: right trajectories pass in every format, wrong ones do not, and mistakes are named."""
+"""Module check.py: right trajectories pass in every format, wrong ones fail with named mistakes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Form = Callable[[Trace], Table]
 
 @cache
 def traces(name: str, *, larger: float = 0.0) -> dict[str, Trace]:
-    """Every run of a case by the reduced model, perhaps of a body larger by a share."""
+    """Every run of a case by the reduced model, optionally of a relatively larger body."""
     sampled = {}
     for run, (case, support) in cases_of(PUBLISHED / "cases" / name).items():
         body, size = case.cylinder, 1.0 + larger
@@ -54,12 +54,12 @@ def tables(name: str, form: Form, **more: float) -> dict[str, Table]:
 
 
 def sparse(runs: dict[str, Table]) -> dict[str, Table]:
-    """Each fourth of two thousand samples."""
+    """Every fourth of two thousand samples."""
     return {run: {key: values[::4] for key, values in table.items()} for run, table in runs.items()}
 
 
 def with_sliding(runs: dict[str, Table]) -> dict[str, Table]:
-    """The reduced model does not slide: as the closed form says, x'' = -(a_x - mu (g + a_z))."""
+    """Trajectory with sliding added by its closed form, x'' = -(a_x - mu (g + a_z))."""
     for run, (case, _) in cases_of(PUBLISHED / "cases" / SLIDING).items():
         if not run.startswith("slides"):
             continue
@@ -164,7 +164,7 @@ def test_model_errors_fail_without_explanation_by_a_file_mistake(judge: Judge) -
 
 
 def y_up(table: Table) -> Table:
-    """The columns in axes whose y points up: x east, z south."""
+    """Columns in axes with y up: x east, z south."""
     names = {"y": "z", "z": "-y", "qy": "qz", "qz": "-qy"}
     taken = {
         key: -table[own[1:]] if own[0] == "-" else table[own] for key, own in names.items() if key in table

@@ -1,4 +1,4 @@
-"""The files of the benchmark: whole, small, certified, and what their README says."""
+"""Benchmark files: complete, small, certified, and consistent with their README."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def test_references_match_closed_forms_and_quadratures() -> None:
 
 
 def test_rigid_body_start_equals_start_in_angles() -> None:
-    """The contact point is on the original circle and has no velocity, and there is no twist rate."""
+    """The contact point lies on the original circle with zero velocity, and the twist rate is zero."""
     for case in CASES:
         for run in read(case, "case")["runs"]:
             start = run["start"]

@@ -1,4 +1,4 @@
-"""A third witness of the free motions: engines of hard contact, in their limit for a vanishing step.
+"""Third witness of the free motions: engines of hard contact, extrapolated to zero step.
 
 DART solves the impulses of points in contact, Exudyn rolls a disc as a constraint: neither has the equations
 that certify a value, nor always its accuracy. So their numbers stand beside it and do not enter its bound.
@@ -22,7 +22,7 @@ FINEST_STEP = 1e-5  # of the three runs [s]
 
 
 def with_witnesses(definition: Definition, quantities: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the quantities, those of free motions with what engines that are installed here say."""
+    """Quantities with the results of installed engines for free motions."""
     said: dict[tuple[str, str], dict[str, float]] = {}
     names = [name for name in WITNESSED.get(definition.name, ()) if name in multibody.available_engines()]
     for name in names:
@@ -40,7 +40,7 @@ def with_witnesses(definition: Definition, quantities: list[dict[str, Any]]) -> 
 
 
 def _sampled(engine: str, run: BenchmarkRun, spacing: float) -> Sampled | None:
-    """Return the samples; None where its runs do not tend to a limit up to the end."""
+    """Samples of the extrapolated run; None if its runs do not converge to the end."""
     case = Case(
         run.cylinder,
         run.motion,

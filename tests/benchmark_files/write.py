@@ -121,7 +121,7 @@ def _run(definition: Definition, run: BenchmarkRun) -> dict[str, Any]:
 
 
 def pose(run: BenchmarkRun) -> dict[str, list[float]]:
-    """Return the start as a rigid body's: of its mass centre against the ground, in world axes.
+    """Start in rigid body terms: mass centre relative to the ground, in world axes.
 
     The axis leans by the tilt towards the azimuth without a twist, the base touches the ground on its
     original circle, equations (8) and (10), and there is no twist rate: psi' = -phi'.

@@ -1,4 +1,4 @@
-"""How far an installation is from a certificate, case by case: the rows of certificates/releases.csv.
+"""Distance of an installation from a certificate by case: the rows of certificates/releases.csv.
 
 `rockwobble verify` answers with one word and stops at the first change. This runs all cases and says by how
 much each differs, before and after the time when agreement must end. Another release of an engine is found
@@ -59,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def rows(path: Path) -> pd.DataFrame:
-    """Return one row for each case: its word, and the largest differences of its samples.
+    """One row for each case: verdict, and the largest differences of its samples.
 
     `before` is the largest of all signals (over alpha, g R, weights) before the agreement time, `of_allowed`
     the largest share of what is allowed there; `after` and `tilt_after` are those of all and of the tilt from

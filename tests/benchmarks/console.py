@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 def options_of(name: str, description: str) -> argparse.ArgumentParser:
-    """Return the parser of a script of this folder, to which it adds its options."""
+    """Parser of a script of this folder, to which it adds its options."""
     return argparse.ArgumentParser(prog=f"python tests/benchmarks {name}", description=description)
 
 
 def tell(event: Progress) -> None:
-    """Say on standard error which run has finished."""
+    """Report a finished run on standard error."""
     if event.state == "finished":
         print(f"{event.done}/{event.total} {event.label}", file=sys.stderr, flush=True)
 

@@ -1,4 +1,4 @@
-"""Whether a deck helps or harms: a pier alone, under slabs, and as cylinders that move alike in one plane.
+"""Benefit of a deck: a pier alone, under slabs, and as cylinders of equal planar motion.
 
 Motion in one plane without loss has two parameters, alpha and p: a pier under a slab moves as a cylinder of
 the same slenderness that is larger by the ratio of p^2. In three dimensions that need not be so. All bodies
@@ -44,25 +44,25 @@ _OVERTURNED = "overturned"
 
 
 def deck(ratio: float) -> RockingBody:
-    """Return the pier under a slab of a mass ratio."""
+    """Pier under a slab of a mass ratio."""
     return WobblingFrame(PIER, ratio) if ratio else PIER
 
 
 def equivalent(ratio: float) -> Cylinder:
-    """Return the cylinder of the same slenderness and the same p."""
+    """Cylinder of equal slenderness and equal p."""
     p2 = [body_of(each, 9.81).p2 for each in (PIER, deck(ratio))]
     return Cylinder(semidiagonal=PIER.semidiagonal * p2[0] / p2[1], tan_alpha=PIER.tan_alpha)
 
 
 def bodies() -> dict[str, RockingBody]:
-    """Return the bodies by name."""
+    """Bodies by name."""
     return {f"deck {ratio:g}": deck(ratio) for ratio in RATIOS} | {
         f"as deck {ratio:g}": equivalent(ratio) for ratio in RATIOS if ratio
     }
 
 
 def motions_of(name: str) -> Sequence[GroundMotion]:
-    """Return the motions that the option names."""
+    """Ground motions named by the option."""
     if name == "p695":
         from rockwobble.models.records.p695 import recorded_far_field
 
@@ -103,7 +103,7 @@ def overturning(study: Fragility) -> pd.DataFrame:
 
 
 def needs(motions: Sequence[GroundMotion], support: str = "recess") -> Iterator[dict[str, float]]:
-    """Yield for each ratio the medians, over the motions that do not overturn it, of what it asks for."""
+    """Yield for each ratio the median demands over the motions that do not overturn it."""
     threshold = 9.81 * PIER.tan_alpha
     for ratio in RATIOS:
         demands = []
@@ -159,7 +159,7 @@ def picture(table: pd.DataFrame, title: str) -> Picture:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print the tables; make them first where motions are named."""
+    """Print the tables, computing them first if motions are named."""
     import pandas as pd
 
     parser = options_of("decks", "Median overturning intensities of a pier under slabs.")

@@ -1,4 +1,4 @@
-"""Settings of the engines by their error on four exact solutions, and how MuJoCo's standing base uplifts.
+"""Errors of engine settings in four exact solutions, and uplift of MuJoCo's standing base.
 
 `python tests/benchmarks engine_settings` prints a row for each value of a setting, all others at their
 defaults, at the default step. No column rests on the equations that the engines are compared with:
@@ -115,7 +115,7 @@ Used = tuple[float, Mapping[str, Any]]  # step [s] and settings of a run
 
 
 def simulator(engine: str, name: str = "", value: Any = None, used: list[Used] | None = None) -> Simulate:
-    """Runs of an engine at its default step, or a share of it, with one setting that may be no default.
+    """Runs of an engine at a fraction of its default step, with one changed setting.
 
     The settings of each run are appended to `used`.
     """
@@ -153,7 +153,7 @@ def free(simulate: Simulate) -> float:
 
 
 def wobble(simulate: Simulate) -> float:
-    """Largest distance of the tilt vectors in steady wobble over alpha."""
+    """Largest tilt vector difference in steady wobble over alpha."""
     tilt = 0.5 * PIER.alpha
     rate = float(steady_wobble_rate(PIER, tilt))
     # without friction along the rim, so that it is the same motion in the recess and on flat ground
@@ -175,7 +175,7 @@ def slide(simulate: Simulate) -> float:
 
 
 def impact(simulate: Simulate) -> float:
-    """Largest error of the peaks after closings in one plane over alpha."""
+    """Largest peak error after planar impacts, over alpha."""
     times = np.arange(0.0, 0.8001, 0.005)
     motion = GroundMotion(np.column_stack([0.65 * G * np.sin(2.0 * np.pi * times / 0.8), 0.0 * times]), 0.005)
     case = Case(CAN, motion, duration=3.0, friction=GRIP)
@@ -194,7 +194,7 @@ SOLUTIONS: Mapping[str, Callable[[Simulate], float]] = {
 
 
 def error_of(solution: str, simulate: Simulate) -> float:
-    """Error of a run; infinite where it failed, NaN where the engine refuses the setting or the problem."""
+    """Error of a run; infinite if failed, NaN if the engine refuses setting or problem."""
     try:
         return SOLUTIONS[solution](simulate)
     except ValueError:
@@ -204,7 +204,7 @@ def error_of(solution: str, simulate: Simulate) -> float:
 
 
 def settings_table(engine: str, names: Sequence[str] = ()) -> Iterator[dict[str, str]]:
-    """Rows of an engine, the default first; what is the default of a solution is marked there and not run."""
+    """Rows of an engine, default settings first; settings equal to the default are not repeated."""
     used: dict[str, list[Used]] = {solution: [] for solution in SOLUTIONS}
     defaults = {each: f"{error_of(each, simulator(engine, used=used[each])):.1e}" for each in SOLUTIONS}
 
@@ -228,7 +228,7 @@ LENGTH, EARLY = 6.0, 2.0  # [s]
 
 
 def motions_of(body: Cylinder) -> list[GroundMotion]:
-    """El Centro and two synthetic motions, their peak twice what uplifts a body."""
+    """El Centro and two synthetic motions, with peaks of twice the uplift threshold."""
     peak = 2.0 * G * body.tan_alpha
     record = el_centro_1940()
     return [record.scaled(peak / record.peak), *synthetic_motions(2, peak=peak, seed=59)]
@@ -241,7 +241,7 @@ def early_difference(model: Trace, trace: Trace) -> float:
 
 
 def uplift_table() -> Iterator[dict[str, Any]]:
-    """Rows of support, body and base: the worst of three motions."""
+    """Rows by support, body and base, for the worst of three motions."""
     for support, (size, tan_alpha) in product(("recess", "flat"), BODIES):
         body = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
         cases = [Case(body, motion, duration=LENGTH, friction=GRIP) for motion in motions_of(body)]

@@ -30,7 +30,7 @@ HEADINGS = ("study", "n", "levels", "median", "dispersion", "ratio")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
-    """A kind of study: motions of a capacity each, drawn from a lognormal distribution.
+    """Kind of study: motions with one capacity each from a lognormal distribution.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Kind:
     between_levels: float = 0.0
 
     def draw(self, random: np.random.Generator) -> tuple[Sample, Sample]:
-        """Return the motions by two methods of the same capacity but for a scatter of a fifth."""
+        """Motions by two methods with equal capacity except for a scatter of 20 %."""
         x = np.log(np.geomspace(1.25, 12.0, self.levels))
         capacity = random.normal(math.log(MEDIAN), self.dispersion, self.motions)
         scatter = 0.2 * random.standard_normal((2, self.motions))
@@ -78,7 +78,7 @@ KINDS = (
 
 
 def coverage(kind: Kind, studies: int, draws: int = RESAMPLES, seed: int = 1) -> tuple[float, float, float]:
-    """Return the shares of studies whose intervals hold the median, the dispersion and the ratio of 1."""
+    """Shares of studies whose intervals contain the median, the dispersion and a ratio of 1."""
     random = np.random.default_rng(seed)
     inside, once = np.zeros((studies, 3)), np.ones((1, kind.motions))
     for place in range(studies):

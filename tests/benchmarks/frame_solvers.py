@@ -1,4 +1,4 @@
-"""Columns and a slab as bodies of their own: by springs at the points of the rims, by MuJoCo, by PyBullet.
+"""Columns and slab as separate bodies: by springs at the rims, by MuJoCo, by PyBullet.
 
 One column under a slab that can only translate besides by the engines of the product.
 
@@ -32,7 +32,7 @@ _STEP = 0.05  # of the period of a column between two springs, over 2 pi
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Frame:
-    """One problem: a frame and how far it is from the ideal one."""
+    """One problem: a frame with its imperfections."""
 
     columns: int  # 1: under a slab that cannot turn
     ratio: float = 1.0
@@ -58,7 +58,7 @@ class Frame:
 
     @property
     def body(self) -> Body:
-        """The same, as an engine gets it."""
+        """The column in the format of an engine."""
         return scaled_body(self.cylinder, 1.0)
 
     @property
@@ -70,7 +70,7 @@ class Frame:
 
     @property
     def half_width(self) -> float:
-        """Of the square slab [m]."""
+        """Half width of the square slab [m]."""
         return (self.circle + _EDGE) * self.body.base_radius
 
     @property
@@ -80,7 +80,7 @@ class Frame:
 
     @property
     def slab_inertia(self) -> Array:
-        """Of the slab about its mass centre (3,) [m^2], over the mass of a column."""
+        """Slab inertia about its mass centre (3,) [m^2], over the mass of a column."""
         square = (2.0 * self.half_width) ** 2
         shape = np.array([square + self.thickness**2] * 2 + [2.0 * square])
         return np.asarray(self.inertia * self.slab_mass * shape / 12.0)
@@ -93,11 +93,11 @@ class Frame:
         return Case(frame, self.motion, initial=release, duration=self.duration)
 
     def reference(self) -> Trace:
-        """Return the reduced model of the ideal frame."""
+        """Reduced model of the ideal frame."""
         return reduced.simulate(self.case, support=self.support, sample_step=SAMPLE, rtol=1e-10)
 
     def ground(self, steps: int, step: float) -> Array:
-        """Return the ground acceleration before and after each step (steps + 1, 3) [m/s^2]."""
+        """Ground acceleration before and after each step (steps + 1, 3) [m/s^2]."""
         accelerations, times = np.zeros((steps + 1, 3)), step * np.arange(steps + 1)
         if self.motion is not None:
             at = np.arange(len(self.motion.acceleration)) * self.motion.time_step
@@ -106,7 +106,7 @@ class Frame:
         return accelerations
 
     def start(self) -> tuple[Array, Array, Array, Array]:
-        """Return positions, quaternions, velocities and spins, each (n + 1, .), the slab last."""
+        """Initial positions, quaternions, velocities and spins, each (n + 1, .), slab last."""
         body, alpha, count = self.body, self.cylinder.alpha, self.columns
         place, turn = np.zeros((count + 1, 3)), np.zeros((count + 1, 4))
         velocity, spin = np.zeros((count + 1, 3)), np.zeros((count + 1, 3))
@@ -140,7 +140,7 @@ class Motion:
 
 
 def _motion(frame: Frame, axes: Array, turn: Array, load: Array) -> Motion:
-    """Make it of axes (m, n, 3), quaternions of the slab (m, 4) and normal forces (m, n)."""
+    """Motion from axes (m, n, 3), quaternions of the slab (m, 4) and normal forces (m, n)."""
     return Motion(
         tilt=np.arctan2(np.hypot(axes[..., 0], axes[..., 1]), axes[..., 2]),
         turned=2.0 * np.arccos(np.clip(np.abs(turn @ turn[0]), 0.0, 1.0)),
@@ -237,7 +237,7 @@ def _mjcf(frame: Frame, step: float, impedance: float, contact_steps: float) -> 
 
 
 def by_bullet(frame: Frame, step: float = 2e-4) -> Motion:
-    """Solve by PyBullet, whose contact does not give: a free slab, a guide torque at each step."""
+    """Solve by PyBullet with rigid contact: a free slab, a guide torque at each step."""
     import pybullet as bullet
 
     client, body = bullet.connect(bullet.DIRECT), frame.body
@@ -296,14 +296,14 @@ def by_bullet(frame: Frame, step: float = 2e-4) -> Motion:
 
 
 def by_engine(frame: Frame, name: str, step: float | None = None) -> Motion:
-    """Solve by an engine of the product."""
+    """Solve by an engine of the package."""
     trace = simulate(frame.case, engine=name, support=frame.support, time_step=step, sample_step=SAMPLE)
     count = len(trace.time)
     return Motion(tilt=trace.tilt[:, None], turned=np.zeros(count), load=np.full((count, 1), np.nan))
 
 
 def by_springs(frame: Frame) -> Motion:
-    """Solve with springs, critically damped, at the lowest and the highest point of each column's rims."""
+    """Solve with critically damped springs at the lowest and highest rim point of each column."""
     body, count = frame.body, frame.columns
     place, turn, velocity, spin = frame.start()
     stiffness = (1.0 + frame.ratio) * G / (frame.give * body.base_radius)
@@ -349,7 +349,7 @@ def _matrix(turn: Array) -> Array:
 
 @_jit
 def _to_rim(axis: Array, towards: Array, half: float, b: float) -> Array:
-    """Return the point of an end's rim that is farthest in a direction, from the mass centre."""
+    """Point of an end's rim that is farthest in a direction, from the mass centre."""
     along = np.dot(axis, towards)
     across = towards - along * axis
     size = math.sqrt(np.dot(across, across))
@@ -360,7 +360,7 @@ def _to_rim(axis: Array, towards: Array, half: float, b: float) -> Array:
 def _contact(
     depth: float, normal: Array, slip: Array, stretch: Array, stiffness: float, friction: float, step: float
 ) -> tuple[Array, float]:
-    """Return force and normal force; `stretch` (3,) is that of the spring of friction."""
+    """Force and normal force; `stretch` (3,): elongation of the friction spring."""
     damping = math.sqrt(2.0 * stiffness)
     closing = np.dot(slip, normal)
     load = stiffness * depth - damping * closing

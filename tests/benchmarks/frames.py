@@ -1,4 +1,4 @@
-"""Whether the columns of a frame stay in step, and with the reduced model, when each is a body of its own.
+"""Columns of a frame as separate bodies: whether they stay in step and match the reduced model.
 
 Columns of R = 6 m and tan(alpha) = 0.5 under a slab of their own mass, released at alpha/2 with 0.5 rad/s, in
 three formulations of contact (`frame_solvers`). ``python tests/benchmarks frames`` prints the tables,
@@ -29,7 +29,7 @@ def _mujoco(step: float, impedance: float = 0.99, contact_steps: float = 10.0) -
 
 
 def one_column() -> Iterator[Row]:
-    """A slab that can only translate: what the reduced model assumes."""
+    """Rows of a slab that only translates, the assumption of the reduced model."""
     for support in ("recess", "flat"):
         frame = Frame(columns=1, support=support)
         for step in (1e-3, 5e-4, 2e-4):
@@ -39,7 +39,7 @@ def one_column() -> Iterator[Row]:
 
 
 def engines() -> Iterator[Row]:
-    """The same in the engines of the product, at four times the default step and at the default."""
+    """Rows of the package's engines, at four times the default step and at the default."""
     for name in own_engines():
         for support in find_engine(name).supports[:2]:
             for step in (4e-4, 1e-4):
@@ -48,7 +48,7 @@ def engines() -> Iterator[Row]:
 
 
 def equal_columns() -> Iterator[Row]:
-    """A free slab on equal columns."""
+    """Rows of a free slab on equal columns."""
     for columns in (3, 4, 5, 6):
         frame = Frame(columns=columns)
         yield f"{columns}, springs, give 1e-4 b", frame, by_springs
@@ -59,7 +59,7 @@ def equal_columns() -> Iterator[Row]:
 
 
 def imperfect() -> Iterator[Row]:
-    """Three and four columns that are not quite equal, or not quite below their slab."""
+    """Rows of three and four slightly unequal columns, in height or position."""
     kinds: Mapping[str, Mapping[str, float]] = {
         "ideal": {},
         "one longer by 1 give": {"longer": 1.0},
@@ -87,7 +87,7 @@ def imperfect() -> Iterator[Row]:
 
 
 def shaken() -> Iterator[Row]:
-    """Slender columns (tan alpha 0.2), released at 0.3 alpha and 0.2 rad/s as El Centro begins."""
+    """Rows of slender columns (tan alpha 0.2), released at 0.3 alpha and 0.2 rad/s under El Centro."""
     slender = Frame(
         columns=1, tan_alpha=0.2, circle=5.0, tilt=0.3, spin=0.2, motion=el_centro_1940(), duration=8.0
     )
@@ -111,7 +111,7 @@ TABLES = {
 
 
 def measured(frame: Frame, solve: Callable[[Frame], Motion]) -> tuple[float, float, float, float, float]:
-    """Return until when columns are in step [s], and largest differences over that time.
+    """Time until which columns stay in step [s], and largest differences up to it.
 
     From the reduced model and between columns in alpha, turn of the slab in rad, and the least load of a
     column over its share of the slab, in the whole run.

@@ -1,4 +1,4 @@
-"""What a little loss changes: fragility of the pier, and how long traces can be compared.
+"""Effects of a small loss: fragility of the pier, and agreement times.
 
 `python tests/benchmarks loss_effects` prints two tables from reports/published/loss, and with ``--run`` makes
 them first: medians and dispersions of the pier over the length of rolling resistance, all under the same
@@ -71,7 +71,7 @@ def _agreement(case: rw.Case, reference: rw.Trace, trial: rw.Trace) -> tuple[flo
 
 
 def agreements() -> pd.DataFrame:
-    """Return the agreement time [s from uplift] of each motion, and whether the traces diverged."""
+    """Agreement time of each motion [s from uplift], and whether the traces diverged."""
     import dataclasses
 
     import pandas as pd
@@ -92,7 +92,7 @@ def agreements() -> pd.DataFrame:
 
 
 def by_length(table: pd.DataFrame) -> pd.DataFrame:
-    """Return median and quartiles of the agreement time, and how many diverge, by trial and length."""
+    """Median and quartiles of the agreement time, and diverged count, by trial and length."""
     import pandas as pd
 
     rows = []
@@ -104,14 +104,14 @@ def by_length(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def stored(name: str) -> pd.DataFrame:
-    """Return a table of the folder."""
+    """Table of the folder."""
     import pandas as pd
 
     return pd.read_csv(FOLDER / f"{name}.csv")
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print the tables, and make them first where that is asked for."""
+    """Print the tables, computing them first on request."""
     parser = options_of("loss_effects", "Fragility and agreement times with rolling resistance.")
     parser.add_argument("--run", action="store_true", help="make the tables first (minutes)")
     if parser.parse_args(arguments).run:

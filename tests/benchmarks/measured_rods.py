@@ -1,4 +1,4 @@
-"""What rods that roll on their rim under a magnet keep at a pass, beside Housner and rolling resistance.
+"""Tilt rate kept at a pass by rods rolling on their rim, compared with Housner and rolling resistance.
 
 `python tests/benchmarks measured_rods` prints the table from reports/published/measured/rods.csv, and with
 ``--tracks FOLDER``, a checkout of the measurement, makes that file first. The tracks are positions of one
@@ -47,7 +47,7 @@ _SHARE, _MOST, _FEWEST, _SKIPPED = 0.6, 16, 5, 2
 
 
 def track_of(path: Path) -> NDArray[np.float64]:
-    """Return time [s] and position [px] of a track (n, 3), without samples in which the mark was lost."""
+    """Time [s] and position [px] of a track (n, 3), without samples of a lost mark."""
     lines = [line.split(",")[:3] for line in path.read_text(encoding="utf-8").splitlines()[2:]]
     return np.array([[float(value) for value in line] for line in lines if len(line) == 3 and all(line)])
 
@@ -70,7 +70,7 @@ def passes_of(track: NDArray[np.float64]) -> Iterator[tuple[int, float, float, f
 
 
 def _minima(radius: NDArray[np.float64]) -> list[int]:
-    """Return the samples nearest to the centre, one for each crossing."""
+    """Samples nearest to the centre, one per crossing."""
     minima: list[int] = []
     for i in range(1, len(radius) - 1):
         if radius[i] > radius[max(i - 6, 0) : i + 7].min():
@@ -84,7 +84,7 @@ def _minima(radius: NDArray[np.float64]) -> list[int]:
 
 
 def _speed(track: NDArray[np.float64], at: int, turning: int) -> float:
-    """Return the speed at the sample `at` [px/s], extrapolated by a parabola from the side of `turning`."""
+    """Speed at sample `at` [px/s], by a parabola from the side of `turning`."""
     count = int(min(_SHARE * abs(turning - at), _MOST))
     if count < _FEWEST:
         return float("nan")
@@ -95,7 +95,7 @@ def _speed(track: NDArray[np.float64], at: int, turning: int) -> float:
 
 
 def table_of(folder: Path) -> pd.DataFrame:
-    """Return the passes of all tracks below `folder`, one row each; a track that is a copy is left out."""
+    """Passes of all tracks below `folder`, one row each; duplicate tracks are skipped."""
     import pandas as pd
 
     paths = sorted(folder.glob("**/*deg.txt"), key=lambda path: path.name)
@@ -119,7 +119,7 @@ def table_of(folder: Path) -> pd.DataFrame:
 
 
 def kept(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the share of the tilt rate that each geometry keeps, by both estimators.
+    """Share of the tilt rate kept by each geometry, by both estimators.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def kept(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print the table; with the tracks, make the file that it is of."""
+    """Print the table, from the tracks if they are given."""
     import pandas as pd
 
     parser = options_of("measured_rods", "What rolling rods keep at a pass, measured.")

@@ -1,4 +1,4 @@
-"""Shares of fresh motions for which the friction and the restraining moment that the limits state suffice.
+"""Coverage of stated friction and restraining moment requirements by new motions.
 
 `python tests/benchmarks needs_coverage --seed 7` prints them by slenderness and intensity, with counts. The
 stated needs are computed from the published tables; the cylinders are of sizes drawn at random between the
@@ -36,7 +36,7 @@ RECORDS = 22
 def coverage(
     stated: pd.DataFrame, sizes: tuple[float, float], motions: Sequence[GroundMotion], draws: int, seed: int
 ) -> pd.DataFrame:
-    """Return `stated` with motions that rock and stand, and those of them whose need is covered.
+    """`stated` with counts of standing, rocking motions, and of those within their requirement.
 
     The columns more: standing, friction_covered, moment_covered.
     """

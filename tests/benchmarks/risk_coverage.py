@@ -1,4 +1,4 @@
-"""How often the 95 % intervals of annual frequencies, and of ratios of two of them, hold the truth.
+"""Coverage of 95 % intervals of annual frequencies and of their ratios.
 
 `python tests/benchmarks risk_coverage` draws the intensities at which motions overturn two bodies, lognormal
 and cut off at uplift, many times anew, and counts how often the interval of the frequency under a power-law
@@ -49,7 +49,7 @@ _POPULATION = 100_000
 
 
 def coverage(trials: int, seed: int, problems: Sequence[Problem] = PROBLEMS) -> Iterator[dict[str, float]]:
-    """Yield for each problem the shares of the trials in which the intervals hold the truth."""
+    """Yield for each problem the coverage of its intervals in the trials."""
     at = np.geomspace(0.01, 200.0, 60)
     for motions, stripes, dispersion, apart, exponent, uplift in problems:
         lift = math.log(uplift * MEDIAN)

@@ -1,4 +1,4 @@
-"""One can in one simulator, with the settings it starts from or with better ones: what `who_can_rock` runs.
+"""A can in one simulator, with default or better settings: a process of `who_can_rock`.
 
 It needs numpy and the simulator alone, so that a simulator may have an environment of its own:
 
@@ -56,7 +56,7 @@ def _lean(w: float, x: float, y: float, z: float) -> tuple[float, float]:
 
 
 def mujoco(step: float, best: bool) -> World:
-    """Contact of 20 ms, pyramidal cone."""
+    """MuJoCo: contact time constant 20 ms, pyramidal cone."""
     import mujoco  # type: ignore[import-untyped]
 
     model = mujoco.MjModel.from_xml_string(
@@ -79,7 +79,7 @@ def mujoco(step: float, best: bool) -> World:
 
 
 def pybullet(step: float, best: bool) -> World:
-    """Friction 1 on both, margin of 4 cm, damping of 0.04."""
+    """PyBullet: friction 1 on both bodies, margin 4 cm, damping 0.04."""
     import pybullet
 
     pybullet.connect(pybullet.DIRECT)
@@ -107,7 +107,7 @@ def pybullet(step: float, best: bool) -> World:
 
 
 def dart(step: float, best: bool) -> World:
-    """A box as the ground, detector of its own."""
+    """DART: box as ground, its default collision detector."""
     import dartpy
 
     world = dartpy.simulation.World()
@@ -146,7 +146,7 @@ def dart(step: float, best: bool) -> World:
 
 
 def drake(step: float, best: bool) -> World:
-    """Discrete contact, stiffness from an allowed penetration of 1 mm."""
+    """Drake: discrete contact, stiffness from a penetration of 1 mm."""
     from pydrake import geometry
     from pydrake.common.eigen_geometry import Quaternion
     from pydrake.math import RigidTransform, RotationMatrix
@@ -194,7 +194,7 @@ def drake(step: float, best: bool) -> World:
 
 
 def rapier(step: float, best: bool) -> World:
-    """Contact of 30 Hz, four substeps, friction shared by the contacts."""
+    """Rapier: contact of 30 Hz, four substeps, friction shared by the contacts."""
     import rapier3d
 
     world = rapier3d.PhysicsWorld(gravity=(0.0, 0.0, -G))
@@ -226,7 +226,7 @@ def rapier(step: float, best: bool) -> World:
 
 
 def physx(step: float, best: bool, corners: int = 0) -> World:
-    """Temporal Gauss-Seidel, 10 iterations, angular damping of 0.05.
+    """PhysX: temporal Gauss-Seidel, 10 iterations, angular damping 0.05.
 
     Better without damping, with the 4 iterations that PhysX itself begins with, and with all contacts: the
     persistent manifold keeps four of them, on which the base stands as on a square.
@@ -278,7 +278,7 @@ def physx(step: float, best: bool, corners: int = 0) -> World:
 
 
 def _prism(corners: int) -> str:
-    """Return a prism inscribed in the can, its axis along x, as an OBJ file."""
+    """Prism inscribed in the can, its axis along x, as an OBJ file."""
     turns = math.tau * np.arange(corners) / corners
     points = [f"v {x} {B * math.cos(turn)} {B * math.sin(turn)}" for x in (-H, H) for turn in turns]
     faces = []
@@ -291,7 +291,7 @@ def _prism(corners: int) -> str:
 
 
 def prism(step: float, best: bool, corners: int) -> World:
-    """Pivots on one corner and lands on the next without bounce and slip: what a polygon itself loses."""
+    """Ideal prism, pivoting from corner to corner without bounce and slip: the loss of a polygon."""
     turns = math.tau * np.arange(corners) / corners
     rim = np.column_stack([B * np.cos(turns), B * np.sin(turns), np.full(corners, -H)])
     pose, spin, pivot = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), 0  # spin about body axes
@@ -443,7 +443,7 @@ def _released(world: World) -> None:
 
 
 def turned(world: World, step: float) -> dict[str, float]:
-    """Return the angle of turn [deg] and the next largest tilt over the release.
+    """Angle of turn [deg], and the next tilt maximum over the release tilt.
 
     Raises
     ------
@@ -477,7 +477,7 @@ def cost(world: World) -> float:
 
 
 def misses(tilt: float, aside: float, share: float) -> list[str]:
-    """Return what is wrong with a tilt [rad] and its direction [rad] off the load, under a share of g."""
+    """Error of a tilt [rad] and its direction relative to the load [rad], under a share of g."""
     if share < 0.5:
         return ["leans at 0.49 g"] if tilt > STANDS else []
     if tilt < LEANS:
@@ -486,7 +486,7 @@ def misses(tilt: float, aside: float, share: float) -> list[str]:
 
 
 def uplifts(made: Callable[[], World], step: float) -> list[str]:
-    """Return what goes wrong in the uplift sweep: nothing if all seven directions are right."""
+    """Errors in the uplift sweep; empty if all seven directions are right."""
     wrong: list[str] = []
     for azimuth in math.tau * np.arange(DIRECTIONS) / DIRECTIONS:
         for share in (0.49, 0.51):
@@ -502,7 +502,7 @@ def uplifts(made: Callable[[], World], step: float) -> list[str]:
 
 
 def impacts(world: World, step: float) -> list[float]:
-    """Largest tilts [alpha] between the closings of a base under one sine of 0.65 g in 0.8 s."""
+    """Largest tilts [alpha] between impacts under one sine of 0.65 g in 0.8 s."""
     world.put(np.array([0.0, 0.0, H]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), np.zeros(3))
     leans = []
     times = (np.arange(int(SWINGS[-1][1] / step)) + 0.5) * step
@@ -515,7 +515,7 @@ def impacts(world: World, step: float) -> list[float]:
 
 
 def printed(name: str, variant: str, what: str = "motion") -> None:
-    """Print what a simulator does, or what a step of it costs, as JSON in the last line."""
+    """Print the results of a simulator, or the cost of a step, as JSON in the last line."""
     package, default, better, simulator = WORLDS[name]
     best = variant == "best"
     step = better if best else default

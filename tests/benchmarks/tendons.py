@@ -1,4 +1,4 @@
-"""What a tendon does for overturning: medians over prestress and stiffness, in 3D and in planes.
+"""Effect of a tendon on overturning: medians over prestress and stiffness, in 3D and in planes.
 
 The bodies meet the same motions at the same intensities, and ratios of medians are of the same resamples of
 the motions. Stiffness is stated over the one at which the static couple neither falls nor grows with the
@@ -71,7 +71,7 @@ _OVERTURNED = "overturned"
 
 
 def neutral_stiffness(body: RockingBody) -> float:
-    """Return the stiffness at which the slope of the static couple is 0 [weights per base radius]."""
+    """Stiffness at which the static couple has zero slope [weights per base radius]."""
     gaps = 2 if body.slab_mass_ratio > 0.0 else 1
     return (1.0 + 2.0 * body.slab_mass_ratio) / (gaps**2 * body.tan_alpha)
 
@@ -111,7 +111,7 @@ def medians(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float | str]]
 
 
 def medians_of_many(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float | str]]:
-    """Yield what `medians` does, at fewer points and by the batch kernel."""
+    """Yield rows as `medians`, at fewer points and by the batch kernel."""
     weights = resamples(len(motions), RESAMPLES, SEED)
     for name, body in BODIES.items():
         without: dict[str, list[Curves]] = {}
@@ -139,7 +139,7 @@ def medians_of_many(motions: Sequence[GroundMotion]) -> Iterator[dict[str, float
 def _overturned(
     body: RockingBody, tendon: Tendon, motions: Sequence[GroundMotion], levels: Array
 ) -> dict[str, Sample]:
-    """Return by method which motions at which levels [g tan(alpha)] overturn a body."""
+    """Overturning of a body by motion and level [g tan(alpha)], by method."""
     peaks: dict[str, list[Array]] = {"recess model": [], "planar x": [], "planar y": []}
     planes = (None, 0.0, 0.5 * math.pi)
     for motion in motions:
@@ -166,7 +166,7 @@ def _stated(name: str, centres: list[Array], over: list[Array] | None, motions: 
 
 
 def on_flat_ground(motions: Sequence[GroundMotion], engine: str) -> Iterator[dict[str, float | str]]:
-    """Yield where the base of the pier lies after each prestress: medians over what does not overturn it."""
+    """Yield residual displacements of the pier by prestress: medians over motions that it stands."""
     scale = FLAT_LEVEL * 9.81 * PIER.tan_alpha
     for prestress in PRESTRESS:
         tendon = Tendon(prestress=prestress) if prestress else None
@@ -185,7 +185,7 @@ def on_flat_ground(motions: Sequence[GroundMotion], engine: str) -> Iterator[dic
 
 
 def picture(table: pd.DataFrame) -> Picture:
-    """Return the medians of the pier in 3D over the prestress, by stiffness."""
+    """Medians of the pier in 3D over the prestress, by stiffness."""
     own = table[(table["body"] == "pier") & (table["method"] == "recess model")]
     names = [f"k/k_n = {each:g}" for each in STIFFNESS]
     styles, layers = run_styles(names), []

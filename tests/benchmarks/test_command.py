@@ -1,4 +1,4 @@
-"""The command finds its scripts, each answers for itself, and the README lists them."""
+"""Benchmark command: finds its scripts, each has help, and the README lists them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the guide says of decks is in the published tables, which say what the equations ask for."""
+"""Deck guide and published tables agree, and the tables match the equations."""
 
 from __future__ import annotations
 

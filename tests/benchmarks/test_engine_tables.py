@@ -1,4 +1,4 @@
-"""The commands that print the evidence for the engines: their functions on small problems."""
+"""Commands for engine evidence: their functions on small problems."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The intervals of a fragility cover what they are for, in few studies: the command takes more."""
+"""Coverage of fragility intervals in few studies; the command runs more."""
 
 from __future__ import annotations
 

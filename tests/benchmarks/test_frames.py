@@ -1,4 +1,4 @@
-"""The table of frames: its solvers against the reduced model, and that it sees what is out of step."""
+"""Frame solvers compared with the reduced model, and detection of columns out of step."""
 
 from __future__ import annotations
 

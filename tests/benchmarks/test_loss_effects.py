@@ -1,4 +1,4 @@
-"""The sentences on what a little loss changes are those of the stored tables."""
+"""Stated effects of a small loss match the stored tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The estimators find a known loss in a track made here, and the table is the one that is described."""
+"""Estimators recover a known loss from an artificial track, and the table matches its description."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FITTED = 2e-3
 
 
 def made_track() -> np.ndarray:
-    """Return a track under a constant pull to the centre that keeps KEPT of the speed at each pass."""
+    """Track under a constant pull to the centre that keeps KEPT of the speed at each pass."""
     random = np.random.default_rng(1)
     pull, speed, begin, step = 4e4, 6000.0, 0.0, 1.0 / 240.0
     times, places, side = [], [], 1.0

@@ -1,4 +1,4 @@
-"""The coverage of stated needs counts what it is given, in few runs: the command takes more."""
+"""Coverage of stated requirements in few runs; the command runs more."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the guide says of the intervals of annual frequencies is what the trials give."""
+"""Guide on intervals of annual frequencies matches the trials."""
 
 from __future__ import annotations
 

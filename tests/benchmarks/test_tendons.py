@@ -1,4 +1,4 @@
-"""What the published page says of tendons is in its tables, which say what statics asks for."""
+"""Published tendon page matches its tables, and the tables match statics."""
 
 from __future__ import annotations
 

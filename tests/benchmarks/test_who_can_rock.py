@@ -1,4 +1,4 @@
-"""The page on who can rock: its table is the one that is kept, and its sentences have the table's numbers."""
+"""Page on who can rock: its table and sentences match the stored table."""
 
 from __future__ import annotations
 

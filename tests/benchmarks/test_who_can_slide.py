@@ -1,4 +1,4 @@
-"""Slides are judged by displacement, mode and twist, and the command sums them up."""
+"""Slides are judged by displacement, mode and twist; the command adds them up."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a witness cannot do is a row of its table, and no crash."""
+"""Failure of a witness process becomes a table row."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who can rock: one can in every simulator, with its default settings and with the best that were found.
+"""Who can rock: one can in every simulator, with default and with the best known settings.
 
 Default settings, and simulators that rockwobble does not drive, are in `rock_worlds`, each run in a process
 of its own. The best settings of an engine are those of rockwobble. PhysX and Newton need a Python with
@@ -74,7 +74,7 @@ def _released(engine: str) -> Trace:
 
 
 def driven(engine: str) -> dict[str, Any]:
-    """Return what an engine does with the settings of rockwobble, on flat ground."""
+    """Result of an engine with the settings of rockwobble, on flat ground."""
     trace = _released(engine)
     upright = int(trace.tilt[:1200].argmin())
     top = upright + int(trace.tilt[upright:].argmax())
@@ -100,7 +100,7 @@ def driven(engine: str) -> dict[str, Any]:
 
 
 def foreign(simulator: str, variant: str, python: str) -> dict[str, Any]:
-    """Return what a simulator does in a process of its own."""
+    """Result of a simulator in a separate process."""
     try:
         return dict(_answer(python, simulator, variant))
     except subprocess.TimeoutExpired:
@@ -139,7 +139,7 @@ def _row(simulator: str, settings: str, answer: Mapping[str, Any]) -> dict[str, 
 
 
 def page(table: pd.DataFrame, when: str, command: str) -> str:
-    """Return the table as Markdown."""
+    """Table as Markdown."""
     lines = [
         "| simulator | formulation | precision | settings | step [s] | turn [deg] | tilt regained | uplift "
         "| µs a step | remark |",
@@ -187,7 +187,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _measured(simulator: str, python_of: Callable[[str], str]) -> list[dict[str, Any]]:
-    """Return a row for each of the settings of a simulator; none of an engine that is not installed here."""
+    """Row for each of the settings of a simulator; none of an engine that is not installed here."""
     if simulator in engine_packages() and simulator not in own_engines():
         return []
     print(f"{simulator} ...", file=sys.stderr, flush=True)
@@ -203,7 +203,7 @@ def _measured(simulator: str, python_of: Callable[[str], str]) -> list[dict[str,
 
 
 def _time(rows: Sequence[dict[str, Any]], python_of: Callable[[str], str]) -> None:
-    """Time a step of each row that ran, in rounds, so that other work on the machine falls on all alike."""
+    """Time a step of each row, in rounds that share other load equally."""
     ran = [row for row in rows if math.isfinite(row["turn"])]
     rounds = []
     for number in range(_ROUNDS):
@@ -214,7 +214,7 @@ def _time(rows: Sequence[dict[str, Any]], python_of: Callable[[str], str]) -> No
 
 
 def known(out: Path) -> pd.DataFrame:
-    """Return the table that a folder has."""
+    """Stored table of a folder."""
     import pandas as pd
 
     return pd.read_csv(out / "simulators.csv", dtype={"version": str}).fillna({"version": "", "remark": ""})

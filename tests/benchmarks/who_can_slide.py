@@ -28,7 +28,7 @@ DRAWS, SEED, LENGTH, G = 40, 62, 6.0, 9.81  # [-], [-], [s], [m/s^2]
 
 
 def draws() -> Iterator[Case]:
-    """Frictions of 0.1 to 0.97 b/h, bodies, records, intensities; one in four with a vertical component."""
+    """Random frictions of 0.1 to 0.97 b/h, bodies, records, intensities; a quarter with vertical motion."""
     random = np.random.default_rng(SEED)
     for number in range(DRAWS):
         tan_alpha = float(np.exp(random.uniform(np.log(0.15), 0.0)))
@@ -51,7 +51,7 @@ def draws() -> Iterator[Case]:
 
 
 def judged(case: Case, run: Trace) -> tuple[float, str]:
-    """Largest difference of displacement over its peak, and what is wrong in words, if anything."""
+    """Largest displacement difference over its peak, and the errors in words."""
     exact = reduced.simulate(case, support="flat", sample_step=0.01)
     count = min(len(run.time), len(exact.time))
     apart = np.hypot(*(run.displacement[:count] - exact.displacement[:count]).T)
@@ -65,7 +65,7 @@ def judged(case: Case, run: Trace) -> tuple[float, str]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print each draw that is wrong, and the sums."""
+    """Print each wrong draw, and the totals."""
     parser = options_of("who_can_slide", __doc__ or "")
     parser.add_argument("engines", nargs="*", help="default: all that can start from rest")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="a setting")

@@ -1,4 +1,4 @@
-"""A prism in LMGC90 on a slab that shakes: what `witnesses` runs, in a process of its own.
+"""Prism in LMGC90 on a shaken slab: a process of `witnesses`.
 
 It needs compas_lmgc90 and numpy alone. LMGC90 computes one simulation a process, and what it cannot do ends
 the interpreter. Standard input has the problem, the last line of standard output the answer, as JSON.
@@ -22,7 +22,7 @@ TABLE_STEP = 1e-3  # of the velocity of the slab, linear between its samples [s]
 
 
 def prism(corners: int, tilt: float) -> dict[str, Any]:
-    """A prism of these corners whose axis leans towards x, its lowest corner on the plane z = 0."""
+    """Prism with these corners, axis leaning towards x, lowest corner on the plane z = 0."""
     angle = 2.0 * math.pi * np.arange(corners) / corners
     base = np.column_stack([B * np.cos(angle), B * np.sin(angle), np.full(corners, -H)])
     points = np.vstack([base, base * [1.0, 1.0, -1.0]])

@@ -1,4 +1,4 @@
-"""A column on no-tension contacts in OpenSees, in a plane and in space: a process of `witnesses`.
+"""Column on no-tension contacts in OpenSees, planar and spatial: a process of `witnesses`.
 
 It needs openseespy and numpy alone. Standard input has the problem, the last line of standard output the
 answer, as JSON.
@@ -29,7 +29,7 @@ HALVINGS = (10, 100)  # parts of a step that does not converge
 
 
 def plane(o: Any, problem: dict[str, Any]) -> tuple[int, int]:
-    """Build the column in a plane; return the nodes that its axis joins."""
+    """Build the planar column; return the end nodes of its axis."""
     o.model("basic", "-ndm", 2, "-ndf", 3)
     o.node(1, 0.0, H, "-mass", MASS, MASS, MASS * TRANSVERSE)
     o.node(2, 0.0, 0.0)
@@ -54,7 +54,7 @@ def plane(o: Any, problem: dict[str, Any]) -> tuple[int, int]:
 
 
 def space(o: Any, problem: dict[str, Any]) -> tuple[int, int]:
-    """Build the column in space; return the nodes that its axis joins."""
+    """Build the spatial column; return the end nodes of its axis."""
     o.model("basic", "-ndm", 3, "-ndf", 3)
     across = math.sqrt(1.5 * AXIAL)
     along = math.sqrt(3.0 * TRANSVERSE - across**2)
@@ -94,7 +94,7 @@ def _solve(o: Any, tolerance: float) -> None:
 
 
 def simulated(problem: dict[str, Any]) -> dict[str, Any]:
-    """Time [s], tilt [rad], processor time [s], and when a step did not converge [s], None if all did."""
+    """Time [s], tilt [rad], processor time [s], and the time a step failed to converge [s] or None."""
     import openseespy.opensees as o  # type: ignore[import-not-found]
 
     dimensions = problem["dimensions"]

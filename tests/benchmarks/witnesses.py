@@ -1,4 +1,4 @@
-"""LMGC90 and OpenSees on motions from rest, beside the reduced models: a law of impact, and finite elements.
+"""LMGC90 and OpenSees compared with the reduced models: impact law, and finite elements.
 
 Each runs with a Python that has it (`pip install compas_lmgc90`, `pip install openseespy`), each row in a
 process of its own; one that ends without an answer is a row, too. Body: radius 1 m, height 4 m.
@@ -50,7 +50,7 @@ OPENSEES: Sequence[tuple[str, dict[str, Any]]] = (
 
 
 def motion(kind: str) -> GroundMotion:
-    """One sine of 0.65 g in x; half a sine of 0.7 g in x and a sine of 0.28 g in y; or still ground."""
+    """One sine of 0.65 g in x; half sine of 0.7 g in x with sine of 0.28 g in y; or still ground."""
     length = {"plane": 0.8, "space": 1.0, "tilted": 1.0}[kind]
     phase = 2.0 * np.pi * np.linspace(0.0, 1.0, 161)
     sines = {
@@ -62,7 +62,7 @@ def motion(kind: str) -> GroundMotion:
 
 
 def asked(python: str, child: str, kind: str, settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The answer of a witness; where it gives none, why."""
+    """Answer of a witness; without one, the reason."""
     ground = motion(kind)
     problem = {
         "acceleration": ground.acceleration.tolist(),
@@ -87,7 +87,7 @@ def asked(python: str, child: str, kind: str, settings: Mapping[str, Any]) -> di
 
 
 def told(kind: str, time: Array, tilt: Array) -> list[float]:
-    """The numbers of a motion [alpha]: largest tilts between closings, or tilts at the moments."""
+    """Tilts of a motion [alpha]: maxima between impacts, or values at the compared times."""
     tilt = tilt / BODY.alpha
     if kind == "plane":
         inside = [(time > low) & (time < high) for low, high in SWINGS]
@@ -96,7 +96,7 @@ def told(kind: str, time: Array, tilt: Array) -> list[float]:
 
 
 def of_model(kind: str) -> list[float]:
-    """The same of the reduced model: planar by the moment of momentum, or on flat ground."""
+    """Tilts of the reduced model: planar by the moment of momentum, or on flat ground."""
     case = Case(BODY, motion(kind), duration=2.5, friction=5.0, gravity=G)
     more: dict[str, Any] = {"plane": 0.0, "restitution": "momentum"} if kind == "plane" else {}
     trace = reduced.simulate(case, support="flat", sample_step=0.001, **more)

@@ -1,4 +1,4 @@
-"""The worked examples of the guides are what their commands and their code say."""
+"""Worked examples of the guides match their commands and code."""
 
 from __future__ import annotations
 

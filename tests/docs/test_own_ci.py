@@ -1,4 +1,4 @@
-"""The workflow to paste works, as it stands, in a repository such as the page shows."""
+"""Workflow from the documentation, run in a repository like that of its page."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ONE_GROUP = " --only rest"  # all of them take half a minute, and other tests ru
 
 @pytest.fixture(scope="module")
 def repository(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The example: a suite with its records, which are the first seconds of El Centro."""
+    """Example repository: a suite with its records, the first seconds of El Centro."""
     place = tmp_path_factory.mktemp("my-bridge")
     records = place / "tests" / "records"
     records.mkdir(parents=True)
@@ -43,7 +43,7 @@ def repository(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(command: str, repository: Path) -> subprocess.CompletedProcess[str]:
-    """Run a line of the workflow as a runner does: bash -e, in the checkout, with its variables."""
+    """Run a line of the workflow like a CI runner: bash -e, in the checkout, with its variables."""
     scripts = str(Path(sys.executable).parent)
     own = {
         "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}",

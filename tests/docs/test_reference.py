@@ -1,4 +1,4 @@
-"""Every public name, command and key has its place in the reference; notebooks are kept without output."""
+"""Reference documentation of every public name, command and key; notebooks stored without output."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_every_public_name_is_documented(package: str) -> None:
 
 
 def public(package: str) -> dict[str, object]:
-    """What a package says is public, by its full name."""
+    """Public names of a package, in full."""
     module = importlib.import_module(f"rockwobble.{package}")
     return {f"{package}.{name}": inspect.unwrap(getattr(module, name)) for name in module.__all__}
 
@@ -137,20 +137,20 @@ def test_keys_of_suites_and_groups_of_findings_are_on_their_pages() -> None:
 
 
 def stated_levels() -> dict[str, set[str]]:
-    """Levels of each key or pattern of keys on the page of findings, in its order."""
+    """Levels of each key or key pattern on the page of findings, in its order."""
     page = (DOCS / "reference" / "findings.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (`.*`) \| (.*) \|$", page.partition("## Levels")[2], re.MULTILINE)
     return {key: set(levels.split(", ")) for keys, levels in rows for key in re.findall(r"`(.*?)`", keys)}
 
 
 def levels_of(key: str) -> set[str]:
-    """Levels that the page states of a key."""
+    """Levels of a key on the page."""
     stated = stated_levels()
     return next((stated[each] for each in stated if fnmatch(key, each)), {"note"})
 
 
 def constants(node: ast.AST) -> set[str]:
-    """Texts of an expression."""
+    """String constants of an expression."""
     values = (each.value for each in ast.walk(node) if isinstance(each, ast.Constant))
     return {value for value in values if isinstance(value, str)}
 

@@ -1,4 +1,4 @@
-"""The scenes to paste rock as the exact solution does; with the engines' own settings they do not."""
+"""Scenes to paste match exact solutions; with the default settings of the engines they do not."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def test_tendon_recentres_the_can_at_the_stated_time(monkeypatch: pytest.MonkeyP
 
 
 def close_passes(share: float = 0.0, end: float = 40.0, **how: Any) -> FloatArray:
-    """Return the lean every 0.1 s of docs/guide/scenes/close-passes.md, its release off by a share."""
+    """Tilt every 0.1 s of docs/guide/scenes/close-passes.md, with a relative error of its release."""
     shaken = GroundMotion(np.outer(np.resize([0.0, 2.0, 0.0, -2.0], 81), [1.0, 0.0]), 0.5)
     start = InitialState(0.5 * CAN.alpha * (1.0 + share), rolling_angle=0.5 * math.pi, rolling_rate=0.05)
     case = Case(CAN, shaken, initial=start, duration=end)
@@ -124,7 +124,7 @@ def close_passes(share: float = 0.0, end: float = 40.0, **how: Any) -> FloatArra
 
 
 def factors(share: float, **how: Any) -> FloatArray:
-    """Return by how much a share of the tilt of release has grown at 10, 20, 30 and 40 s."""
+    """Growth of a relative error of the release tilt at 10, 20, 30 and 40 s."""
     apart = np.linalg.norm(close_passes(share, **how) - close_passes(**how), axis=1)
     return apart[100:401:100] / (share * math.sin(0.5 * CAN.alpha))
 

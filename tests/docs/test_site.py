@@ -1,4 +1,4 @@
-"""The built site: links that lead somewhere, terms that are links where they are used first, pages that fit.
+"""Built site: valid links, glossary links at first use, and page widths.
 
 `python -m sphinx -W --keep-going -n docs docs/_build/html` builds it; ROCKWOBBLE_SITE may name another place.
 """

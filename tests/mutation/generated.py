@@ -57,7 +57,7 @@ sys.exit(not found.passed)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GeneratedFault:
-    """One fault: the place of a node among those of its file that can be changed."""
+    """One fault: index of a changeable node of its file."""
 
     file: str  # path in the checkout
     place: int
@@ -67,7 +67,7 @@ class GeneratedFault:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """One line of the table: a fault and what found it, "check", "tests" or "nothing"."""
+    """One table row: a fault and its detection by "check", "tests" or "nothing"."""
 
     file: str
     change: str
@@ -77,7 +77,7 @@ class Row:
 
 
 def faults_of(file: str, source: str) -> list[GeneratedFault]:
-    """Return the faults of a file."""
+    """Faults of a file."""
     digest = hashlib.sha256(source.encode()).hexdigest()[:12]
     tree = ast.parse(source)
     faults = []
@@ -89,7 +89,7 @@ def faults_of(file: str, source: str) -> list[GeneratedFault]:
 
 
 def applied(fault: GeneratedFault, source: str) -> str:
-    """Return the source with the fault in it."""
+    """Source with the fault applied."""
     tree = ast.parse(source)
     kind, node = list(_sites(tree))[fault.place]
     _change(kind, node)
@@ -97,7 +97,7 @@ def applied(fault: GeneratedFault, source: str) -> str:
 
 
 def _sites(tree: ast.AST) -> Iterator[tuple[str, ast.AST]]:
-    """Yield kind and node of everything that can be changed."""
+    """Yield kind and node of every changeable place."""
     waiting: list[ast.AST] = [tree]
     while waiting:
         node = waiting.pop()
@@ -145,7 +145,7 @@ def _change(kind: str, node: ast.AST) -> None:
 
 
 def sample(checkout: Path, count: int, seed: int, only: str = "") -> list[GeneratedFault]:
-    """Return `count` faults: files in turn and in a random order, so that each counts alike."""
+    """Sample of `count` faults, files in turn and in random order, so that each counts alike."""
     chance, by_file = random.Random(seed), []
     for package in PACKAGES:
         for path in sorted((checkout / package).rglob("*.py")):
@@ -161,7 +161,7 @@ def sample(checkout: Path, count: int, seed: int, only: str = "") -> list[Genera
 
 
 def near(root: Path, file: str) -> list[str]:
-    """Return the test files that import a module, those of its package and those named for it first.
+    """Test files that import a module, with those of its package and name first.
 
     Where none does, those of the package.
     """
@@ -178,7 +178,7 @@ def near(root: Path, file: str) -> list[str]:
 
 
 def tried(root: Path, fault: GeneratedFault) -> Row:
-    """Put a fault into a copy of the checkout, ask tests and check, and take it out again."""
+    """Apply a fault to a copy of the checkout, run tests and check, and revert it."""
     path = root / fault.file
     source = path.read_text(encoding="utf-8")
     path.write_text(applied(fault, source), encoding="utf-8")
@@ -205,7 +205,7 @@ def tried(root: Path, fault: GeneratedFault) -> Row:
 
 
 def _run(root: Path, command: list[str], *, limit: float) -> tuple[bool, str]:
-    """Return whether a command failed, and its last line."""
+    """Whether a command failed, and its last line."""
     environment = os.environ | {
         "PYTHONPATH": f"{root / 'src'}{os.pathsep}{root / 'tests'}",
         "PYTHONDONTWRITEBYTECODE": "1",
@@ -227,7 +227,7 @@ def _run(root: Path, command: list[str], *, limit: float) -> tuple[bool, str]:
 
 
 def run(checkout: Path, table: Path, *, count: int, seed: int, only: str) -> int:
-    """Try a sample, keep the table, print the score, and return the exit code.
+    """Try a sample, write the table, print the score, and return the exit code.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Faults chosen by hand: one at a time in a copy of the reduced models, or in the settings of an engine.
+"""Handwritten faults: one at a time in a copy of the reduced models, or in the settings of an engine.
 
     python tests/mutation listed            # every fault
     python tests/mutation listed --only "1 % off"
@@ -32,7 +32,7 @@ INTERPRETED = tuple(group for group in GROUPS if group not in ("order", "baselin
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mutation:
-    """One fault, and where it is sought first."""
+    """One fault, with the check groups that should detect it first."""
 
     name: str
     group: str  # of the checks that find it; the others are asked where it does not
@@ -42,7 +42,7 @@ class Mutation:
 
 
 def mutations() -> tuple[Mutation, ...]:
-    """Return all faults; those of engines are faults of the standard engines."""
+    """All faults; engine faults are for the standard engines."""
     return (
         *_terms(1.01, "1 % off"),
         *_terms(-1.0, "sign"),
@@ -54,7 +54,7 @@ def mutations() -> tuple[Mutation, ...]:
 
 
 def _terms(factor: float, word: str) -> list[Mutation]:
-    """Every term of (18) and (19), wherever it stands: at the start of a step and in its series."""
+    """Every term of (18) and (19), at the start of a step and in its series."""
     return [
         Mutation(name=f"{word}: {each.name}", faults=(each.fault,), group="equations")
         for each in term_faults(factor)
@@ -62,7 +62,7 @@ def _terms(factor: float, word: str) -> list[Mutation]:
 
 
 def _constants() -> list[Mutation]:
-    """Constants of the body 1 % off, wherever they are used; R off through the cylinder itself."""
+    """Body constants 1 % off, wherever they are used; R off through the cylinder itself."""
     # those of which others are made are changed before A, the first that is made of them
     made_of = {"b": "b", "h": "h", "I1": "I1", "I2": "I2"}
     changes = {name: at_assignment("body_of", "A", f"{symbol} *= 1.01") for name, symbol in made_of.items()}
@@ -93,7 +93,7 @@ def _constants() -> list[Mutation]:
 
 
 def _around(file: str, head: str, body: str) -> Fault:
-    """Return the fault of a function that calls the one of its name as `without_fault`."""
+    """Fault that wraps a function; the original is called `without_fault`."""
     text = f"def {head}:\n" + "".join(f"    {line}\n" for line in body.splitlines())
     return Fault(file=file, change=wrapped(head.split("(")[0], text))
 
@@ -130,7 +130,7 @@ def _structure() -> list[Mutation]:
 
 
 def _tendons() -> list[Mutation]:
-    """Constants and terms of a tendon; the balance tilt shortens runs alone, and a test looks at it."""
+    """Constants and terms of a tendon; the balance tilt only shortens runs and has its own test."""
     changes = {
         f"{factor} {field}": scaled_argument("_tied_body", "TiedBody", field, number)
         for factor, number in (("1 % off:", 1.01), ("sign:", -1.0))
@@ -201,7 +201,7 @@ def _engines() -> list[Mutation]:
 
 
 def first_failure(mutation: Mutation) -> Result | None:
-    """Return the first check that finds a fault, those of its own group first; None if none does."""
+    """First check that detects a fault, starting with its own groups; None if none does."""
     groups = [mutation.group, *(group for group in INTERPRETED if group != mutation.group)]
     if mutation.engine:
         subject = engine(mutation.engine, **mutation.settings)
@@ -211,13 +211,13 @@ def first_failure(mutation: Mutation) -> Result | None:
 
 
 def false_alarm() -> Result | None:
-    """Return what fails first in a copy without a fault: then a failure in one with a fault shows nothing."""
+    """First failure in a copy without a fault, which would void all detections."""
     with mutated() as copy:
         return _failed(reduced_model(copy), INTERPRETED, broken=True)
 
 
 def _failed(subject: Subject, groups: Sequence[str], *, broken: bool) -> Result | None:
-    """Return the first failure; `broken`: also that of code which does not run."""
+    """First failure; `broken`: code that does not run counts too."""
     with np.errstate(all="ignore"):  # the interpreter warns of what a kernel takes
         results = (result for group in groups for result in run_checks(subject, [group]))
         failed = (result for result in results if result.failed)
@@ -230,7 +230,7 @@ def _does_not_run(result: Result) -> bool:
 
 
 def run(*, only: str = "") -> int:
-    """Try the faults whose name holds the text `only`, print a table, and return the exit code."""
+    """Try the faults with names containing `only`, print a table, and return the exit code."""
     begun, missed = time.monotonic(), 0
     alarm = false_alarm()
     if alarm is not None:

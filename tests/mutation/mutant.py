@@ -58,7 +58,7 @@ class Fault:
     change: Change  # of its tree in place; a ValueError says that its place is gone
 
     def applied(self, text: str) -> str:
-        """Return the text of the file with the fault in it.
+        """Text of the file with the fault applied.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class Fault:
 
 
 def source_folder() -> Path:
-    """Return the folder of the sources of the reduced models."""
+    """Folder of the sources of the reduced models."""
     spec = find_spec("rockwobble.reduced")
     assert spec is not None
     assert spec.origin is not None
@@ -111,7 +111,7 @@ def _compiled(source: str, place: str) -> CodeType:
 
 
 class _Sources(MetaPathFinder, InspectLoader):
-    """Finds and loads the modules of one copy."""
+    """Import hook for the modules of one copy."""
 
     def __init__(self, name: str, folder: Path, faults: tuple[Fault, ...]) -> None:
         self.name, self._folder, self._faults = name, folder, faults

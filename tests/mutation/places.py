@@ -1,4 +1,4 @@
-"""Places in a source file by the names that stand there: a function, an assignment in it, an argument.
+"""Places in a source file by name: a function, an assignment in it, an argument.
 
 What is changed is the tree of the parsed source, never its text: layout, comments and line numbers may
 change, and a place that is gone is an error that lists what there is.
@@ -17,7 +17,7 @@ ORIGINAL = "without_fault"
 
 
 def function_in(tree: ast.AST, name: str) -> ast.FunctionDef:
-    """The function of a dotted name, such as "make_driver.integrate"."""
+    """Function of a dotted name, such as "make_driver.integrate"."""
     scope: ast.AST = tree
     for part in name.split("."):
         inside = {each.name: each for each in _below(scope)}
@@ -27,7 +27,7 @@ def function_in(tree: ast.AST, name: str) -> ast.FunctionDef:
 
 
 def assignment_in(function: ast.FunctionDef, target: str) -> tuple[list[ast.stmt], int]:
-    """The block and the place in it of the first assignment to `target`, written as in the source."""
+    """Block and index of the first assignment to `target`, written as in the source."""
     places: dict[str, tuple[list[ast.stmt], int]] = {}
     for block in _blocks(function):
         for index, statement in enumerate(block):
@@ -40,7 +40,7 @@ def assignment_in(function: ast.FunctionDef, target: str) -> tuple[list[ast.stmt
 
 
 def argument_in(function: ast.FunctionDef, call: str, keyword: str) -> ast.keyword:
-    """An argument given by keyword in the first call of `call`."""
+    """Keyword argument in the first call of `call`."""
     calls = [node for node in ast.walk(function) if isinstance(node, ast.Call)]
     given = {each.arg: each for node in calls if ast.unparse(node.func) == call for each in node.keywords}
     named = {name: each for name, each in given.items() if name is not None}
@@ -48,7 +48,7 @@ def argument_in(function: ast.FunctionDef, call: str, keyword: str) -> ast.keywo
 
 
 def at_assignment(function: str, target: str, statement: str, *, after: bool = False) -> Change:
-    """Puts a statement in front of the first assignment to `target`, or after it."""
+    """Insert a statement before the first assignment to `target`, or after it."""
 
     def change(tree: ast.Module) -> None:
         block, index = assignment_in(function_in(tree, function), target)
@@ -58,7 +58,7 @@ def at_assignment(function: str, target: str, statement: str, *, after: bool = F
 
 
 def scaled_argument(function: str, call: str, keyword: str, factor: float) -> Change:
-    """Multiplies an argument of a call."""
+    """Multiply an argument of a call."""
 
     def change(tree: ast.Module) -> None:
         argument = argument_in(function_in(tree, function), call, keyword)
@@ -68,7 +68,7 @@ def scaled_argument(function: str, call: str, keyword: str, factor: float) -> Ch
 
 
 def wrapped(function: str, text: str) -> Change:
-    """Puts the definition `text`, which calls the replaced one as `without_fault`, around a function."""
+    """Wrap a function by the definition `text`, which calls the original as `without_fault`."""
 
     def change(tree: ast.Module) -> None:
         original = function_in(tree, function)
@@ -80,7 +80,7 @@ def wrapped(function: str, text: str) -> Change:
 
 
 def appended(text: str) -> Change:
-    """Adds statements to the end of the module."""
+    """Append statements to the module."""
 
     def change(tree: ast.Module) -> None:
         tree.body += ast.parse(text).body

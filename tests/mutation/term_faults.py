@@ -1,4 +1,4 @@
-"""Faults in every term of the equations of the recess model, found in the source itself.
+"""Faults in every term of the equations of the recess model, generated from the source.
 
 `reduced/integration/taylor.py` builds (18) and (19) from sums with names of their own. Each term of each
 of these sums, at the start of a step and in its series, is one place for a fault: a factor of 1.01, or -1. A
@@ -44,7 +44,7 @@ class TermFault:
 
 
 def term_faults(factor: float) -> Iterator[TermFault]:
-    """Yield a fault for each term of each sum, which is multiplied by `factor`.
+    """Yield a fault for each term of each sum, multiplied by `factor`.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def term_faults(factor: float) -> Iterator[TermFault]:
 
 
 def _assignments(tree: ast.Module) -> list[list[tuple[str, ast.expr]]]:
-    """Names and values of every assignment; those of tuples one by one."""
+    """Names and values of every assignment, tuples split."""
     assignments = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign) and len(node.targets) == 1:
@@ -82,7 +82,7 @@ def _assignments(tree: ast.Module) -> list[list[tuple[str, ast.expr]]]:
 
 
 def _terms(value: ast.expr) -> list[ast.expr]:
-    """Operands of all sums and differences in an expression, those that are sums themselves left out."""
+    """Operands of all sums and differences in an expression, without nested sums."""
     terms = []
     for node in ast.walk(value):
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
@@ -95,7 +95,7 @@ def _is_sum(node: ast.expr) -> bool:
 
 
 def _scaled_term(index: int, target: str, place: int, factor: float) -> Change:
-    """Return the change that multiplies one term of one sum by a factor."""
+    """Change that multiplies one term of one sum by a factor."""
 
     def change(tree: ast.Module) -> None:
         value = dict(_assignments(tree)[index])[target]

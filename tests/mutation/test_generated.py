@@ -1,4 +1,4 @@
-"""Generated faults: where they are made, and that each is really in the copy that is tried."""
+"""Generated faults: their places, and their presence in the tested copy."""
 
 from __future__ import annotations
 

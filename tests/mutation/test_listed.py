@@ -1,4 +1,4 @@
-"""Every listed fault is found by the check, and a fault is really in the copy that is tried."""
+"""Every listed fault is detected by the check, and is present in the tested copy."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_undetected_faults_are_reported(
 def test_fault_whose_code_raises_does_not_count_as_detected(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A wrapper with a parameter too few ends every run in a TypeError: no check has found what it plants."""
+    """A wrapper with a missing parameter ends every run in a TypeError, which is no detection."""
     wrapper = "def body_of(cylinder): return without_fault(cylinder)"
     stale = Mutation(
         name="stale signature",

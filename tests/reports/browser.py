@@ -1,4 +1,4 @@
-"""Pages looked at in Chromium, as wide as a screen and as a phone: what a reader would stumble over.
+"""Pages in Chromium at desktop and phone width: faults that a reader would meet.
 
 A page must not ask for anything outside of itself, or of its `window.home` where it is one of a site: no name
 of a host resolves here.
@@ -56,7 +56,7 @@ _FRAME = (
 
 
 def dumped(page: Path) -> str:
-    """Return the elements of a page once its scripts have run, as HTML."""
+    """Elements of a page after its scripts, as HTML."""
     return _opened(page).stdout
 
 
@@ -69,7 +69,7 @@ def _opened(page: Path) -> subprocess.CompletedProcess[str]:
 def complaints(
     page: str, folder: Path, *, figures: int, further: str = "", widths: Iterable[str] = tuple(WIDTHS)
 ) -> list[str]:
-    """Return what is wrong with a page; nothing, if all is well.
+    """Faults of a page; empty if there are none.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def complaints_of_all(
     further: str = "",
     widths: Iterable[str] = tuple(WIDTHS),
 ) -> dict[int, list[str]]:
-    """Return what is wrong with each of several pages, by its place; see `complaints`.
+    """Faults of several pages, by index; see `complaints`.
 
     What the browser itself complains of is among that of the last.
     """

@@ -1,4 +1,4 @@
-"""Comparisons without engines, as reduced models in an engine's clothes, and runs without processes."""
+"""Fixtures: comparisons with models in place of engines, and runs without processes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ RESOLUTION = 2e-5  # [rad]
 
 
 def disguised(job: Job, **fields: Any) -> Trace:
-    """Return the trace of a model; for an engine that of a body slightly off, on the model of its support."""
+    """Trace of a model; for an engine that of a slightly different body, with its support."""
     case, run = job.case, job.run
     if run.is_model:
         model = reduced.simulate(case, support=run.support, **run.settings)
@@ -72,7 +72,7 @@ def comparison() -> Comparison:
 
 @pytest.fixture(scope="module")
 def six_records() -> Iterator[None]:
-    """Six other records in each advice, and two intensities in a plane: all take most of its time."""
+    """Six other records in each advice, and two planar intensities: all of them take most of its time."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(p695, "PAIRS", 6)
         patch.setattr(scales, "PLANAR_SCALES", (1.0, 2.0))
@@ -81,7 +81,7 @@ def six_records() -> Iterator[None]:
 
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run where the model is loaded already, and not in a process that must load it for each command."""
+    """Run inside this process, which has loaded the model; a new process would load it again."""
     run_tasks = execution.run_tasks
 
     def here(*given: Any, **options: Any) -> list[Any]:

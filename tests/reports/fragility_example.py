@@ -1,4 +1,4 @@
-"""A fragility of made-up runs: each method overturns at a known factor on one capacity a motion."""
+"""Fragility from invented runs: each method overturns at a known multiple of the motion's capacity."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ METHODS = {
 
 
 def made_up(cylinders: tuple[str, ...] = ("pier", "tower")) -> Fragility:
-    """Motions of a capacity each, a known factor higher by each method."""
+    """Motions with one capacity each, multiplied by a known factor for each method."""
     random = np.random.default_rng(8)
     runs, points = [], []
     for cylinder in cylinders:

@@ -1,4 +1,4 @@
-"""What every result must show of itself, and a call of the command line; for the tests of each study."""
+"""Assertions for results of every study, and a call of the command line."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rockwobble.reports.pages import page_of
 
 
 def call(*arguments: str) -> int:
-    """The exit code of a command."""
+    """Exit code of a command."""
     with pytest.raises(SystemExit) as ended:
         main(list(arguments))
     code = ended.value.code or 0
@@ -26,7 +26,7 @@ def call(*arguments: str) -> int:
 
 
 def shows_itself(result: Shown, *facts: str) -> None:
-    """Hold that a result says these facts on a line and in a table, and draws them."""
+    """Assert that a result has these facts in its repr and in a table, and a plot."""
     line = repr(result)
     assert line.startswith(f"{type(result).__name__}(")
     assert line.isprintable()
@@ -42,7 +42,7 @@ def shows_itself(result: Shown, *facts: str) -> None:
 
 
 def loads_as_it_was(made: Results, folder: Path) -> None:
-    """Hold that results are the same value when they are loaded: facts and tables, to the bit and by type."""
+    """Assert that loaded results equal the saved ones: facts and tables, bitwise and by type."""
     made.save(folder)
     loaded = type(made).load(folder)
     assert repr(loaded.facts) == repr(made.facts)  # to which a NaN is equal, and a tuple is no list
@@ -57,7 +57,7 @@ GOLDEN = Path(__file__).parent / "golden"
 
 
 def is_golden(made: Results) -> None:
-    """Hold that the page of results is the one in the folder `golden`, which holds the wording."""
+    """Assert that the page of results equals its file in the folder `golden`."""
     kind = made.kind.rpartition(" ")[2]
     manifest = dataclasses.replace(MANIFEST, kind=made.kind, command=f"rockwobble {kind}", about=made.facts)
     page = page_of(dataclasses.replace(made, manifest=manifest)).markdown()

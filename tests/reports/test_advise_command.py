@@ -100,7 +100,7 @@ def test_advice_page_is_drawn_for_every_kind_of_case(names, more, expected, reco
 
 @pytest.fixture(scope="module")
 def advice(six_records: None) -> Advice:
-    """Advice on a strong record; with a manifest, as its page needs one."""
+    """Advice on a strong record, with the manifest that its page needs."""
     motion = el_centro_1940().acceleration[:800]
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), type(el_centro_1940())(motion, 0.01, "short"))
     return advise(case, copies=20, friction_given=False).made_by()
@@ -154,7 +154,7 @@ def finding_of(advice: Advice, group: str) -> tuple[str, Mapping[str, Any]]:
 
 
 def test_each_grade_states_its_deciding_numbers(advice):
-    """Those of tables and facts, under the key of its reason."""
+    """Numbers of tables and facts stand in the finding with the key of the grade's reason."""
     needed = advice.demands.set_index("demand")["value"]["friction"]
     assert finding_of(advice, "friction") == ("friction.not_given", {"demand": needed})
     low, high = advice.range_as_strong
@@ -239,7 +239,7 @@ def test_a_frame_states_its_columns_and_their_limit(advice):
 
 
 def test_chatter_of_a_closed_base_is_not_reported_as_sensitivity(advice):
-    """Of a tilt of 1e-6 alpha and one of 5e-6 alpha neither opens the base: it is not five times as much."""
+    """Tilts of 1e-6 alpha and 5e-6 alpha leave the base closed: their ratio is no sensitivity."""
     tilts = np.geomspace(1e-6, 5e-6, len(advice.as_strong))
     response = {**advice.facts["response"], "peak_tilt": 1e-5}
     still = with_table(changed(advice, response=response), "as_strong", peak_tilt=tilts)

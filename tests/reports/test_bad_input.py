@@ -166,7 +166,7 @@ BAD = {
 
 @pytest.fixture
 def refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
-    """Run a command that must refuse; the one line that it prints."""
+    """The one line printed by a command that must refuse its input."""
     monkeypatch.chdir(tmp_path)
     for name, text in FILES.items():
         Path(name).write_text(text)
@@ -194,7 +194,7 @@ def test_bad_input_is_one_line_and_writes_nothing(refused, command: str, line: s
 
 
 def flags_of(command: str, *annotations: type) -> list[str]:
-    """Options whose value is of one of these types."""
+    """Options with a value of one of these types."""
     options = [option for option in COMMANDS[command].params if option.opts[0].startswith("--")]
     return [each.opts[0] for each in options if each.type_descriptor.annotation in annotations]
 

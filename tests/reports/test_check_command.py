@@ -1,4 +1,4 @@
-"""`rockwobble check`: what it prints and writes, and how it ends."""
+"""`rockwobble check`: output, files and exit codes."""
 
 from __future__ import annotations
 

@@ -65,19 +65,19 @@ PAGES = {
 
 
 def words(path: str | Path) -> str:
-    """The text of a file in one line, without the addresses of its links and the components of planes."""
+    """Text of a file in one line, without link addresses and components of planes."""
     text = (CHECKOUT / path).read_text(encoding="utf-8")
     return " ".join(re.sub(r", component [12](?=\))", "", re.sub(r"\]\([^)]*\)", "]", text)).split())
 
 
 def unstated(path: str | Path, *sentences: str) -> list[str]:
-    """Sentences that do not stand in a file."""
+    """Sentences that are missing from a file."""
     text = words(path)
     return [sentence for sentence in sentences if sentence not in text]
 
 
 def ratios_of(study: str) -> dict[Any, dict[Any, Any]]:
-    """Ratios and their intervals by method and reference, of all cylinders those of the medians."""
+    """Ratios and intervals by method and reference; means over cylinders if there are several."""
     table = pd.read_parquet(PUBLISHED / study / "contrasts.parquet")
     if "limit" in table:
         table = table[(table["cylinder"] == "all") & (table["limit"] == "overturned")]

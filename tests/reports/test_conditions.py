@@ -1,4 +1,4 @@
-"""No page leaves out a condition that is not the usual one: it would be read as of another problem."""
+"""Every page states the conditions that differ from the defaults."""
 
 from __future__ import annotations
 

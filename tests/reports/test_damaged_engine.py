@@ -1,4 +1,4 @@
-"""An engine that is installed and does not load: one line in every command, and defaults without it."""
+"""Installed engines that fail to load: one line in every command, and defaults without them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ COMMANDS = {
 
 
 def install(folder: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
-    """Put a MuJoCo before the one that is installed, as if nothing had loaded it yet."""
+    """Install a damaged MuJoCo ahead of the real one, as if nothing were loaded yet."""
     path = folder / "packages" / "mujoco" / "__init__.py"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
@@ -43,7 +43,7 @@ def install(folder: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
 
 @pytest.fixture
 def fresh() -> Iterator[None]:
-    """Forget what loaded, before and after, with the packages that only stand for it."""
+    """Unload engines before and after a test."""
     registry._load_failure.cache_clear()
     before = {name: module for name, module in sys.modules.items() if name.partition(".")[0] == "mujoco"}
     yield
@@ -55,7 +55,7 @@ def fresh() -> Iterator[None]:
 
 @pytest.fixture
 def damaged(fresh: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Damage MuJoCo in a folder to work in."""
+    """Damaged MuJoCo in a temporary working folder."""
     text = "raise ImportError('libmujoco.so.4: cannot open\\nshared object file')"
     install(tmp_path, monkeypatch, text)
     monkeypatch.chdir(tmp_path)

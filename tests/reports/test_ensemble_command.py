@@ -1,4 +1,4 @@
-"""`rockwobble ensemble`: what it prints, writes and refuses."""
+"""`rockwobble ensemble`: output, files and refusals."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ duration = 2
 
 
 def made_up(factor: float = 1.1) -> Ensemble:
-    """Ten members by a model and an engine: one overturns by both, one by the engine alone."""
+    """Ten members by a model and an engine: one overturns by both, one by the engine only."""
     first = np.array([*np.arange(1, 9) / 10.0, 0.9, FALLEN])
     peaks = {"recess model": first, "mujoco recess": np.array([*factor * first[:8], FALLEN, FALLEN])}
     members = [
@@ -166,7 +166,7 @@ def test_missing_records_give_one_line_with_the_remedy(tmp_path, capsys, monkeyp
 
 
 def test_options_do_not_replace_the_runs_of_a_suite(tmp_path, monkeypatch):
-    """As in `compare`: a time step goes to the runs that the file has, and adds none."""
+    """As in `compare`, a time step applies to the runs of the suite and adds none."""
     given: list[Run] = []
 
     def stopped(*_: object, runs: list[Run], **__: object) -> None:

@@ -1,4 +1,4 @@
-"""The model that the page of `explore` runs, against the reduced models that it repeats, in a browser."""
+"""Model of the `explore` page, run in a browser and compared with the reduced models."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ ROWS = ("tilt", "angle", "x", "y", "outward", "across", "normal")
 
 @dataclass(frozen=True)
 class Problem:
-    """A case, and how it is supported: recess, flat, or planar in an azimuth [rad]."""
+    """Case with its support: recess, flat, or planar in an azimuth [rad]."""
 
     case: Case
     support: str
@@ -57,7 +57,7 @@ class Problem:
         return simulate(case, rtol=rtol, sample_step=STEP, **options)
 
     def stated(self) -> dict[str, object]:
-        """Return it as the page has it."""
+        """The problem as input of the page."""
         case, body = self.case, self.case.cylinder
         initial, tendon, motion = case.initial, case.tendon, case.motion
         values: dict[str, object] = {
@@ -141,7 +141,7 @@ document.body.textContent = JSON.stringify(found);
 def on_the_page(
     solved: list[Problem], folder: Path, *, broken: tuple[str, str] | None = None
 ) -> list[dict[str, Any]]:
-    """Return what the scripts of the page make of problems; `broken`: a text of theirs, and another."""
+    """Results of the page's scripts for some problems; `broken`: script text and its replacement."""
     scripts = "\n".join((SCRIPTS / name).read_text() for name in ("model.js", "motion.js", "slide.js"))
     if broken is not None:
         assert scripts.count(broken[0]) == 1
@@ -154,7 +154,7 @@ def on_the_page(
 
 
 def rate_to_lie_down(body: Cylinder, tendon: Tendon, excess: float) -> float:
-    """Rolling rate at half of alpha with the energy of a quarter turn, but for a relative excess."""
+    """Rolling rate at half of alpha with the energy of a quarter turn plus a relative excess."""
     b, h, g = body.base_radius, body.half_height, 9.81
     axial, transverse = b * b / 2, (3 * b * b + 4 * h * h) / 12
 
@@ -175,7 +175,7 @@ def rate_to_lie_down(body: Cylinder, tendon: Tendon, excess: float) -> float:
 
 @pytest.fixture(scope="module")
 def solved() -> list[tuple[Problem, Trace, Trace]]:
-    """Problems, with the motion of each and that of a perturbed copy."""
+    """Problems, each with its motion and that of a perturbed copy."""
     return [
         (each, each.solved(each.case), each.solved(perturbed_in_gravity(each.case, PERTURBED)))
         for each in problems()
@@ -188,13 +188,13 @@ def apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.fl
 
 
 def agreement(trace: Trace, copy: Trace) -> int:
-    """Return for how many samples a perturbed copy is within what the page may be off."""
+    """Number of samples for which a perturbed copy is within the tolerance of the page."""
     leaves = apart(trace.tilt, copy.tilt) > AGREES * trace.case.cylinder.alpha
     return int(leaves.argmax()) if leaves.any() else len(leaves)
 
 
 def complaints_of(solved: list[tuple[Problem, Trace, Trace]], runs: list[dict[str, Any]]) -> list[str]:
-    """Return what differs between page and package."""
+    """Differences between page and package."""
     wrong = []
     for place, ((problem, trace, copy), run) in enumerate(zip(solved, runs, strict=True)):
         body, until = problem.case.cylinder, agreement(trace, copy)
@@ -298,7 +298,7 @@ def test_page_matches_the_sliding_model_at_friction_below_b_over_h(tmp_path: Pat
     traces = [simulate(case, support="flat", sample_step=STEP) for case in cases]
 
     def off(broken: tuple[str, str] | None = None) -> float:
-        """Largest difference of place and peak, over the peak."""
+        """Largest difference of position and peak, over the peak."""
         runs = on_the_page(problems, tmp_path, broken=broken)
         worst = 0.0
         for run, trace in zip(runs, traces, strict=True):

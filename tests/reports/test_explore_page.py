@@ -1,4 +1,4 @@
-"""The page of `explore`: what the command writes and refuses, and the page in a browser."""
+"""Page of `explore`: files and refusals of the command, and the page in a browser."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ window.lookFurther = (found) => {
 
 
 def given(page: Path) -> dict[str, Any]:
-    """Return what the page was given."""
+    """Input data of the page."""
     match = re.search(r'id="given">(.*?)</script>', page.read_text(encoding="utf-8"), re.DOTALL)
     assert match
     return json.loads(match[1])

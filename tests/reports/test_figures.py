@@ -1,4 +1,4 @@
-"""Figures as data: both renderers draw what the data say, and nothing that they do not."""
+"""Figures as data: both renderers draw all data and nothing else."""
 
 from __future__ import annotations
 

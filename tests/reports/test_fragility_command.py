@@ -152,7 +152,7 @@ def test_fragility_has_repr_table_and_plot(study, tmp_path):
 
 
 def stripes_folder(folder: Path, levels: tuple[float, ...] = (2.0, 9.0)) -> Path:
-    """Return a folder with six records of its own at each level."""
+    """Folder with six separate records at each level."""
     folder.mkdir()
     lines = ["level,x,y,name,units"]
     for place, level in enumerate(levels):

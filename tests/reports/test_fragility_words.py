@@ -1,4 +1,4 @@
-"""Findings and page of a fragility: they say what its tables hold, and nothing of what there is not."""
+"""Findings and page of a fragility: only statements supported by its tables."""
 
 from __future__ import annotations
 

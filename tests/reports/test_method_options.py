@@ -1,4 +1,4 @@
-"""Time step and settings from the command line, and what a run says of itself where it is shown."""
+"""Time step and settings from the command line, and the resulting statements of a run."""
 
 from __future__ import annotations
 

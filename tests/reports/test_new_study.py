@@ -1,4 +1,4 @@
-"""A study is added where docs/development says, to a temporary copy of the package, and is whole there."""
+"""Adding a study at the places listed in docs/development, in a temporary copy of the package."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def test_the_command_saves_shows_draws_again_and_refuses(
 
 
 def places() -> list[str]:
-    """The places of a new study that are listed."""
+    """Listed places of a new study."""
     section = ADDING.read_text(encoding="utf-8").split("## A new study\n")[1].split("\n## ")[0]
     return re.findall(r"^\| `(\S+)` \|", section, re.MULTILINE)
 

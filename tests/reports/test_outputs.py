@@ -1,4 +1,4 @@
-"""What commands write to: nothing that another plan or command has made is replaced without a word."""
+"""Outputs of commands: results of another plan or command are never replaced silently."""
 
 from __future__ import annotations
 

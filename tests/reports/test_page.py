@@ -1,4 +1,4 @@
-"""The page of a comparison: whole, small and the same again; what it says of runs and trajectories."""
+"""Page of a comparison: complete, small and reproducible; its statements on runs and trajectories."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One template, three outputs: they say the same, and none needs anything outside of itself."""
+"""One template, three outputs: equal content, and no external resources."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far something is, in words that a person reads."""
+"""Progress of long work, in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The check of what is published finds damage and words without a table; the guide states its limits."""
+"""Check of published results: detects damage and unsupported numbers; the guide states the limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Published figures, drawn at their size: no words are cut at an edge, no titles or numbers collide."""
+"""Published figures at print size: no text cut or overlapping."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 
 
 def words_of(drawn: Figure) -> Iterator[Text]:
-    """Yield titles, labels, and the words of the ticks within the limits of their axis."""
+    """Yield titles, labels, and visible tick labels."""
     for axes in (each for each in drawn.axes if each.axison):
         yield from (axes.title, axes.xaxis.label, axes.yaxis.label)
         for axis in (axes.xaxis, axes.yaxis):
@@ -32,7 +32,7 @@ def words_of(drawn: Figure) -> Iterator[Text]:
 
 
 def numbers_of(axis: Axis) -> list[Text]:
-    """Return the words of the ticks within the limits of an axis, those of its minor ticks included."""
+    """Visible tick labels of an axis, minor ticks included."""
     low, high = sorted(axis.get_view_interval())
     ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
     inside = [tick for tick in ticks if low <= tick.get_loc() <= high and tick.label1.get_text().strip()]

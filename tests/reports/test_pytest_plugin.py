@@ -1,4 +1,4 @@
-"""Suites as tests: what is collected, what fails, and what a failure says."""
+"""Suites as tests: collected items, failures, and their messages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ pytest_plugins = ["pytester"]
 
 @pytest.fixture(scope="module", autouse=True)
 def modules_of_inner_runs() -> None:
-    """Import once what each run of pytest inside a test would import, and forget, again."""
+    """Import once the modules of each inner pytest run, and unload all others afterwards."""
     import mujoco  # noqa: F401
     import pandas as pd
 

@@ -1,4 +1,4 @@
-"""Every command that takes a record: the same statement of what was read, and the same refusals."""
+"""Commands with a record: equal statements on the input, and equal refusals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was read of a record: the same line in the motion, in stored results, on pages and in the terminal."""
+"""Source of a record: one line in motion, stored results, pages and terminal."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ KEYS = {
 
 @pytest.fixture
 def record(tmp_path: Path) -> Path:
-    """Write a record of 3.1 m/s^2 whose columns do not stand in the order of the axes."""
+    """Record with a peak of 3.1 m/s^2 and columns in another order than the axes."""
     time = np.arange(COUNT) * STEP
     east = 310.0 * np.sin(2.0 * np.pi * time / 0.6)
     rows = [f"{t:.2f},{0.3 * a:.6f},{a:.6f}" for t, a in zip(time, east, strict=True)]

@@ -1,4 +1,4 @@
-"""The one list of commands and results: what it names is there, and what is there it names."""
+"""Registry of commands and results: complete, and without missing targets."""
 
 from __future__ import annotations
 

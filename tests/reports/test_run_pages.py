@@ -1,4 +1,4 @@
-"""The pages of single runs and sweeps: what they say, and that a stored folder draws them again."""
+"""Pages of single runs and sweeps: statements, and redrawing from a stored folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rockwobble show` and `report` from the outside: what a folder holds, and its pages again."""
+"""`rockwobble show` and `report`: contents of a folder, and redrawn pages."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def stored(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def nothing_runs(monkeypatch):
-    """Let nothing run, and no engine be looked at."""
+    """Forbid runs and engine loading."""
 
     def refuse(*_, **__):
         raise AssertionError("something ran, or looked at what is installed")

@@ -1,4 +1,4 @@
-"""`rockwobble spectrum` from the outside, and the words and picture of its page."""
+"""`rockwobble spectrum`: command, wording and picture of its page."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ Numbers = dict[str, dict[str, Any]]
 
 
 def numbers(maps: TiltMaps, checked: pd.DataFrame | None = None, **columns: object) -> Numbers:
-    """Return the numbers of the findings by key; `columns` stand in the table of the lowest."""
+    """Numbers of the findings by key; `columns` replace columns of the table of lowest intensities."""
     lowest = maps.lowest_frame().assign(**({"confirmed": True} | columns))
     tables = {"lowest": lowest, "gaps": safe_gaps(maps), "contrast": planar_contrast(maps)}
     tables["checked"] = pd.DataFrame({"agrees": [True], "sensitive": [False]}) if checked is None else checked
@@ -139,7 +139,7 @@ def test_a_spectrum_without_overturning_says_how_it_was_searched(spectrum):
 
 
 def with_safe(maps: TiltMaps, cells: list[tuple[int, int]]) -> TiltMaps:
-    """Overturned from the fourth intensity on, but in some cells."""
+    """Spectrum overturned from the fourth intensity on, except in some cells."""
     tilt = np.full((12, 12), math.inf)
     tilt[:, :3] = 0.1
     for cell in cells:

@@ -1,4 +1,4 @@
-"""A tendon on the command line and in suites: by ratios, by a drawing, on the page, and what is refused."""
+"""Tendon options and suites: ratios, steel data, the page, and refusals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What commands print on 80 columns."""
+"""Terminal output of commands on 80 columns."""
 
 from __future__ import annotations
 

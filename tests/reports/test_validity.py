@@ -1,4 +1,4 @@
-"""The report on the limits: it says what its numbers say, is complete, drawn, and small enough."""
+"""Validity report: numbers, completeness, figures, and size."""
 
 from __future__ import annotations
 

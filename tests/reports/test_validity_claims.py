@@ -1,4 +1,4 @@
-"""What the published report on the limits says is what its tables bear, counted here once more."""
+"""Published validity report compared with its tables, counted independently here."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def validity() -> Validity:
 
 
 def test_published_validity_page_is_redrawn_exactly(validity: Validity) -> None:
-    """It is the golden page of its kind: `python reports/published/remake.py --redraw` makes it anew."""
+    """Golden page of its kind; `python reports/published/remake.py --redraw` rebuilds it."""
     assert page_of(validity).markdown() == (PUBLISHED / "validity.md").read_text(encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""The file of words: a line for each key that the code finds, a key for each line, and how values look."""
+"""Word file: one line for each key in code, one key for each line, and value formats."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def texts(node: ast.AST) -> set[str]:
 
 
 def texts_of_code() -> set[object]:
-    """All constants of the code: a key may stand in a table before it is given."""
+    """All string constants of the code, as a key may come from a table."""
     return {node.value for tree in modules() for node in ast.walk(tree) if isinstance(node, ast.Constant)}
 
 
@@ -82,7 +82,7 @@ def test_keys_in_code_equal_keys_of_the_word_file():
     stated = texts_of_code()
 
     def parts(key: str) -> set[str]:
-        """Texts in the code that may make a key, as "mode." or the name of a criterion."""
+        """String constants in code that may form a key, such as "mode." or a criterion name."""
         group, _, name = key.partition(".")
         return {key, f"{group}.", name, key.removeprefix("limit_")}
 
@@ -90,7 +90,7 @@ def test_keys_in_code_equal_keys_of_the_word_file():
 
 
 def values_of(line: str, number: Value, text: Value) -> dict[str, Value]:
-    """Values of the quantities that a line names, each of its type."""
+    """Values of the quantities in a line, each of its type."""
     values = {name: text if name.partition("_")[0] in TEXTS else number for name in _FIELD.findall(line)}
     return values | ({"names": ("slip", "tolerance")} if "{names:diagnosed}" in line else {})
 

@@ -71,7 +71,7 @@ def test_ring_run_is_compared_with_the_recess_model(monkeypatch):
 
 
 def made_up(job: Job, peak: float, outcome: str = "stands") -> Trace:
-    """Return a run that has another peak and outcome than it came to."""
+    """Run replaced by one with another peak and outcome."""
     return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)
 
 

@@ -1,4 +1,4 @@
-"""Fragilities for other programs give, read back, the curves and shares of the tables."""
+"""Exported fragilities, read back, give the curves and shares of the tables."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ def study(limits: list[str], measure: str = "peak_acceleration", friction: float
     )
 
 
-def expected(found: Fragility, cylinder: str, limit: str, *, curve: bool) -> np.ndarray:
-    """Probabilities at intensities `AT`, by the tables: of the curve, or of the shares."""
-    unit = found.facts["cylinders"][cylinder]["tan_alpha"]
+def expected(study: Fragility, cylinder: str, limit: str, *, curve: bool) -> np.ndarray:
+    """Probabilities at intensities `AT` from the tables: curve, or else shares."""
+    unit = study.facts["cylinders"][cylinder]["tan_alpha"]
     rows = {
         name: table[(table["cylinder"] == cylinder) & (table["limit"] == limit)]
-        for name, table in found.tables.items()
+        for name, table in study.tables.items()
         if name in ("fits", "counts")
     }
     if curve:
@@ -56,7 +56,7 @@ def expected(found: Fragility, cylinder: str, limit: str, *, curve: bool) -> np.
 
 
 def poes_of_nrml(text: bytes) -> dict[tuple[str, str], np.ndarray]:
-    """Probabilities at `AT` by the rules of NRML 0.5: a reader apart from the writer."""
+    """Probabilities at `AT` by the rules of NRML 0.5, by a reader independent of the writer."""
     model = Tree.fromstring(text).find(f"{NRML}fragilityModel")
     assert model is not None
     poes = {}
@@ -81,13 +81,13 @@ def poes_of_nrml(text: bytes) -> dict[tuple[str, str], np.ndarray]:
 
 
 @pytest.fixture(scope="module")
-def found() -> Fragility:
+def all_limits() -> Fragility:
     return study(list(LIMITS.values()))
 
 
 @pytest.mark.parametrize("fitted", [False, True])
-def test_nrml_gives_the_numbers_of_the_tables(fitted: bool, found: Fragility) -> None:
-    table = study(["0.5 alpha", "overturned"]) if fitted else found
+def test_nrml_export_reproduces_the_tables(fitted: bool, all_limits: Fragility) -> None:
+    table = study(["0.5 alpha", "overturned"]) if fitted else all_limits
     name, text = exported(table, "nrml")
     assert name == "fragility.nrml.xml"
     poes = poes_of_nrml(text)
@@ -103,15 +103,15 @@ def rows_of_pelicun(text: bytes) -> list[dict[str, str]]:
     return list(csv.DictReader(text.decode().splitlines()))
 
 
-def test_pelicun_gets_the_curves_and_what_no_curve_has_as_shares(found: Fragility) -> None:
-    name, text = exported(found, "pelicun")
+def test_pelicun_export_has_curves_or_else_observed_shares(all_limits: Fragility) -> None:
+    name, text = exported(all_limits, "pelicun")
     assert name == "fragility.pelicun.csv"
     for row in rows_of_pelicun(text):
         cylinder = row["ID"].split(":")[0]
         assert (row["Demand-Type"], row["Demand-Unit"]) == ("Peak Ground Acceleration", "g")
         for place, limit in enumerate(LIMITS.values(), start=1):
             family, first, second = (row[f"LS{place}-{each}"] for each in ("Family", "Theta_0", "Theta_1"))
-            right = expected(found, cylinder, limit, curve=family == "lognormal")
+            right = expected(all_limits, cylinder, limit, curve=family == "lognormal")
             if family == "lognormal":
                 z = np.log(AT / float(first)) / float(second)
                 cdf = np.array([0.5 * math.erfc(-each / math.sqrt(2.0)) for each in z])

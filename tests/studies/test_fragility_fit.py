@@ -1,4 +1,4 @@
-"""Lognormal curves by maximum likelihood, intervals by resampling, and medians that no level tells."""
+"""Lognormal curves by maximum likelihood, bootstrap intervals, and medians outside the levels."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ X = np.log([1.0, 1.5, 2.0, 3.0, 4.0])
 
 
 def kind_of(k: list[float], n: float = 10.0) -> tuple[str, float, float]:
-    found = fit_curves(X, np.full((1, 5), n), np.array([k]))
-    return KINDS[found.kinds[0]], float(found.centre[0]), float(found.dispersion[0])
+    curves = fit_curves(X, np.full((1, 5), n), np.array([k]))
+    return KINDS[curves.kinds[0]], float(curves.centre[0]), float(curves.dispersion[0])
 
 
 def data_set(seed: int) -> tuple[Array, Array, Array]:
@@ -52,7 +52,7 @@ def data_set(seed: int) -> tuple[Array, Array, Array]:
     return x, n.astype(float), random.binomial(n, norm.cdf((x - centre) / dispersion)).astype(float)
 
 
-def test_random_sets_are_roots_of_the_score():
+def test_fits_of_random_data_are_roots_of_the_score():
     solved_sets = 0
     for seed in range(60):
         x, n, k = data_set(seed)
@@ -65,20 +65,20 @@ def test_random_sets_are_roots_of_the_score():
             slope = k * hit - (n - k) * miss
             return np.array([slope.sum(), (slope * z).sum()])
 
-        found = fit_curves(x, n[None], k[None])
+        curves = fit_curves(x, n[None], k[None])
         # from a start that knows only the data
         middle = float(x[np.argmin(np.abs(k / n - 0.5))])
         solved = root(score, [middle, math.log(0.5)])
         if not solved.success:
             continue
         solved_sets += 1
-        assert KINDS[found.kinds[0]] == FITTED
-        assert found.centre[0] == pytest.approx(solved.x[0], abs=ROOT)
-        assert found.dispersion[0] == pytest.approx(math.exp(solved.x[1]), abs=ROOT)
+        assert KINDS[curves.kinds[0]] == FITTED
+        assert curves.centre[0] == pytest.approx(solved.x[0], abs=ROOT)
+        assert curves.dispersion[0] == pytest.approx(math.exp(solved.x[1]), abs=ROOT)
     assert solved_sets > 50
 
 
-def test_the_maximum_is_one_and_moves_with_the_intensities():
+def test_likelihood_maximum_is_unique_and_scales_with_intensities():
     n, k = np.full((1, 5), 20.0), np.array([[1.0, 4.0, 9.0, 15.0, 18.0]])
     whole = fit_curves(X, n, k)
     centre, spread = float(whole.centre[0]), float(whole.dispersion[0])
@@ -110,7 +110,7 @@ def test_a_likelihood_without_maximum_is_reported():
     assert KINDS[same.kinds[0]] == FALLING
 
 
-def test_many_at_once_are_each_what_they_are_alone():
+def test_simultaneous_fits_equal_separate_fits():
     random = np.random.default_rng(3)
     n = random.integers(1, 6, (60, 5)).astype(float)
     k = random.binomial(n.astype(int), norm.cdf((X - random.uniform(-2.0, 4.0, (60, 1))) / 0.4)).astype(float)
@@ -126,8 +126,8 @@ def test_many_at_once_are_each_what_they_are_alone():
 def test_probabilities_of_curves_of_every_kind():
     n = np.full((4, 5), 10.0)
     k = np.array([[0, 2, 5, 9, 10], [0] * 5, [10] * 5, [0, 0, 10, 10, 10]], dtype=float)
-    found = fit_curves(X, n, k)
-    at = found.at(np.array([found.centre[0], found.centre[3], X[0], X[-1]]))
+    curves = fit_curves(X, n, k)
+    at = curves.at(np.array([curves.centre[0], curves.centre[3], X[0], X[-1]]))
     assert at[0, 0] == pytest.approx(0.5)
     assert at[1].tolist() == [0.0] * 4
     assert at[2].tolist() == [1.0] * 4
@@ -136,15 +136,15 @@ def test_probabilities_of_curves_of_every_kind():
 
 
 def log_likelihood(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> float:
-    """Binomial, without the coefficients."""
+    """Binomial log likelihood without its constant."""
     eta = (x - centre) / dispersion
     return float((k * log_ndtr(eta) + (n - k) * log_ndtr(-eta)).sum())
 
 
-def test_goodness_is_twice_what_the_likelihood_lacks():
+def test_goodness_of_fit_is_the_deviance():
     n, k = np.full(5, 20.0), np.array([1.0, 2.0, 12.0, 13.0, 19.0])
-    found = fit_curves(X, n[None], k[None])
-    centre, spread = float(found.centre[0]), float(found.dispersion[0])
+    curves = fit_curves(X, n[None], k[None])
+    centre, spread = float(curves.centre[0]), float(curves.dispersion[0])
     held = goodness(X, n, k, centre, spread)
     share = k / n
     own = (k * np.log(share) + (n - k) * np.log(1.0 - share)).sum()
@@ -158,12 +158,12 @@ def test_goodness_is_twice_what_the_likelihood_lacks():
 
 
 def stripes(random: np.random.Generator, levels: Array, *, motions: int = 22) -> Sample:
-    """Motions of a capacity each, around 4 with a dispersion of 0.5."""
+    """Motions with one capacity each, median 4 and dispersion 0.5."""
     capacity = random.normal(math.log(4.0), 0.5, motions)
     return Sample(x=np.tile(levels, (motions, 1)), y=(levels >= capacity[:, None]).astype(float))
 
 
-def test_a_stripe_and_a_cloud_of_the_same_runs_are_one_curve():
+def test_stripe_and_cloud_of_identical_runs_give_one_curve():
     sample = stripes(np.random.default_rng(2), np.log(np.geomspace(1.0, 12.0, 9)))
     nudged = Sample(x=sample.x + 1e-13 * np.arange(22)[:, None], y=sample.y)
     weights = resamples(22, 20, 1)
@@ -174,7 +174,7 @@ def test_a_stripe_and_a_cloud_of_the_same_runs_are_one_curve():
     assert n.tolist() == [[22.0] * 9]
 
 
-def test_a_failed_run_is_no_run():
+def test_failed_runs_are_left_out_of_the_fit():
     sample = stripes(np.random.default_rng(2), np.log(np.geomspace(1.0, 12.0, 9)))
     y = sample.y.copy()
     y[3] = np.nan
@@ -182,12 +182,12 @@ def test_a_failed_run_is_no_run():
     assert Sample(x=sample.x, y=y).curves().centre[0] == pytest.approx(without.curves().centre[0], abs=1e-12)
 
 
-def test_intervals_keep_what_is_not_bounded_and_what_is_not_known():
+def test_intervals_keep_infinite_and_unknown_ends():
     drawn = np.linspace(-1.0, 1.0, 1001)
     low, high = expanded_shares(22)
     assert low == pytest.approx(norm.cdf(math.sqrt(22.0 / 21.0) * -2.0796), abs=1e-5)
-    found = interval(0.0, drawn, 22)
-    assert (found.low, found.high) == pytest.approx((2.0 * low - 1.0, 2.0 * high - 1.0), abs=0.003)
+    bounds = interval(0.0, drawn, 22)
+    assert (bounds.low, bounds.high) == pytest.approx((2.0 * low - 1.0, 2.0 * high - 1.0), abs=0.003)
     drawn[:40] = math.inf
     assert interval(0.0, drawn, 22).high == math.inf
     drawn[:40] = math.nan
@@ -195,17 +195,17 @@ def test_intervals_keep_what_is_not_bounded_and_what_is_not_known():
     assert (unknown.low, unknown.high) == (-math.inf, math.inf)
 
 
-def test_a_dispersion_is_reflected_about_itself():
-    found = spread_interval(0.5, np.linspace(0.4, 0.6, 1001), 22)
+def test_dispersion_interval_is_reflected_about_the_estimate():
+    bounds = spread_interval(0.5, np.linspace(0.4, 0.6, 1001), 22)
     low, high = expanded_shares(22)
-    assert (found.low, found.high) == pytest.approx(
+    assert (bounds.low, bounds.high) == pytest.approx(
         (0.25 / (0.4 + 0.2 * high), 0.25 / (0.4 + 0.2 * low)), rel=1e-3
     )
     # a resample without dispersion bounds nothing
     assert spread_interval(0.5, np.zeros(100), 22).high == math.inf
 
 
-def test_a_band_holds_its_curve_and_is_none_where_all_resamples_agree():
+def test_band_contains_its_curve_and_is_missing_if_all_resamples_agree():
     sample = stripes(np.random.default_rng(5), np.log(np.geomspace(1.0, 12.0, 12)))
     curves = sample.curves(resamples(22, 300, 0))
     x = np.log([1.0, 3.0, 4.0, 6.0, 12.0])
@@ -232,7 +232,7 @@ LOG2, LOG4, LOG16 = LEVELS.tolist()
 
 
 def contrast(first: tuple[int, ...], second: tuple[int, ...]) -> dict[str, Any]:
-    """Two methods by their counts at each level, the same motions first."""
+    """Contrast of two methods from counts at each level, with nested sets of motions."""
     exceeded = [
         np.array([[float(motion < count) for count in counts] for motion in range(MOTIONS)])
         for counts in (first, second)
@@ -253,16 +253,16 @@ def contrast(first: tuple[int, ...], second: tuple[int, ...]) -> dict[str, Any]:
         ((0, 0, 12), (12, 12, 12), "beyond"),  # apart by a level
     ],
 )
-def test_medians_that_no_level_tells_are_no_different(
+def test_medians_not_resolved_by_levels_do_not_differ(
     first: tuple[int, ...], second: tuple[int, ...], verdict: str
 ) -> None:
-    found = contrast(first, second)
-    assert found["verdict"] == verdict
-    assert verdict == "undecided" or found["ratio_low"] == pytest.approx(2.0)
+    difference = contrast(first, second)
+    assert difference["verdict"] == verdict
+    assert verdict == "undecided" or difference["ratio_low"] == pytest.approx(2.0)
 
 
 def exceeded(*rows: str) -> Sample:
-    """One row of 0 and 1 for each motion, at the levels LEVELS."""
+    """Row of 0 and 1 for each motion, at the levels LEVELS."""
     return Sample(x=np.tile(LEVELS, (len(rows), 1)), y=np.array([[float(c) for c in row] for row in rows]))
 
 
@@ -271,34 +271,34 @@ def test_one_motion_gives_no_curve(one: str, rest: str, median: float) -> None:
     # of many motions the counts have a maximum, which is that motion's alone
     sample = exceeded(one, *[rest] * 30)
     assert KINDS[fit_curves(*sample.counts()).kinds[0]] == FITTED
-    found = sample.curves()
-    assert KINDS[found.kinds[0]] == ONE_MOTION
-    assert found.median.tolist() == [median]
-    assert np.isnan(found.at(LEVELS)).all()
+    curves = sample.curves()
+    assert KINDS[curves.kinds[0]] == ONE_MOTION
+    assert curves.median.tolist() == [median]
+    assert np.isnan(curves.at(LEVELS)).all()
     ends = (LOG16, math.inf) if median > 0.0 else (-math.inf, LOG2)
-    assert (found.low[0], found.high[0]) == ends
+    assert (curves.low[0], curves.high[0]) == ends
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_no_median_is_a_number_outside_of_the_levels_that_were_run(seed: int) -> None:
+def test_medians_outside_the_levels_run_are_bounds_not_numbers(seed: int) -> None:
     random = np.random.default_rng(seed)
     levels = np.sort(random.uniform(0.0, 3.0, 4))
     capacity = random.normal(random.uniform(-1.0, 4.0), random.uniform(0.2, 1.5), 25)
     x = np.tile(levels, (25, 1))
     sample = Sample(x=x, y=(x > capacity[:, None]).astype(float))
-    found, many = sample.curves(), sample.curves(resamples(25, 200, seed))
-    median, low, high = float(found.median[0]), float(found.low[0]), float(found.high[0])
+    curve, many = sample.curves(), sample.curves(resamples(25, 200, seed))
+    median, low, high = float(curve.median[0]), float(curve.low[0]), float(curve.high[0])
     assert math.isinf(median) or math.isnan(median) or levels[0] <= median <= levels[-1]
     if math.isinf(median):
         edge = levels[-1] if median > 0.0 else levels[0]
         assert (low, high) == ((edge, math.inf) if median > 0.0 else (-math.inf, edge))
-    if KINDS[found.kinds[0]] in (EXTRAPOLATED, ONE_MOTION):  # no resample tells more than the motions do
+    if KINDS[curve.kinds[0]] in (EXTRAPOLATED, ONE_MOTION):  # no resample tells more than the motions do
         edge = levels[-1] if median > 0.0 else levels[0]
         ends, inner = (many.high, many.low) if median > 0.0 else (-many.low, -many.high)
         assert (np.isnan(ends) | (ends == math.inf)).all()  # NaN counts as anything
         assert not (inner > math.copysign(1.0, median) * edge).any()
-    elif KINDS[found.kinds[0]] == FITTED:
-        assert median == found.centre[0] == low == high
+    elif KINDS[curve.kinds[0]] == FITTED:
+        assert median == curve.centre[0] == low == high
 
 
 @pytest.mark.parametrize(
@@ -313,16 +313,16 @@ def test_no_median_is_a_number_outside_of_the_levels_that_were_run(seed: int) ->
         ([0.0, 0.0, 0.0], math.inf, LOG16, math.inf),
     ],
 )
-def test_the_levels_beside_bound_a_median_without_a_curve(
+def test_adjacent_levels_bound_the_median_without_a_curve(
     counts: list[float], centre: float, low: float, high: float
 ) -> None:
-    found = fit_curves(LEVELS, np.full((1, 3), 12.0), np.array([counts]))
-    assert [found.centre[0], found.low[0], found.high[0]] == pytest.approx([centre, low, high])
+    curves = fit_curves(LEVELS, np.full((1, 3), 12.0), np.array([counts]))
+    assert [curves.centre[0], curves.low[0], curves.high[0]] == pytest.approx([centre, low, high])
 
 
 @pytest.mark.parametrize("one", ["011", "000"])
-def test_a_bound_by_failed_runs_beyond_the_levels_is_no_number(one: str) -> None:
-    """If what failed exceeds nothing, at most one motion exceeds: the median is above all levels."""
+def test_failed_run_bounds_beyond_the_levels_are_not_numbers(one: str) -> None:
+    """If the failed runs exceed nothing, at most one motion exceeds: the median is above all levels."""
     sample = exceeded(one, *["000"] * 7)
     sample.y[1, 1:] = math.nan
     if_exceeded, if_not = _bounds_of_failed(sample)

@@ -1,4 +1,4 @@
-"""Intensity measures against closed forms and an integration of their own."""
+"""Intensity measures compared with closed forms and an independent integration."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 def sine(x: float = 3.0, y: float = 4.0, *, step: float = 0.01, cycles: int = 4) -> GroundMotion:
-    """Both components in phase, of a period of 1 s."""
+    """Sine motion with both components in phase and a period of 1 s."""
     time = np.arange(round(cycles / step) + 1) * step
     wave = np.sin(2.0 * math.pi * time)
     return GroundMotion(np.column_stack([x * wave, y * wave]), step, "sine")
@@ -39,7 +39,7 @@ def test_peaks_of_a_sine_in_closed_form():
 
 
 @pytest.mark.slow
-def test_a_spectrum_is_that_of_the_oscillator_itself():
+def test_response_spectrum_matches_integrated_oscillator():
     motion, period = el_centro_1940(), 0.7
     omega = 2.0 * math.pi / period
     times = np.arange(len(motion.acceleration)) * motion.time_step
@@ -53,9 +53,9 @@ def test_a_spectrum_is_that_of_the_oscillator_itself():
     solved = solve_ivp(rate, (0.0, end), np.zeros(4), t_eval=fine, max_step=0.01, rtol=1e-7, atol=1e-10)
     largest = omega**2 * np.hypot(solved.y[0], solved.y[1]).max() / 9.81
     # the samples are 1/32 of a period apart, so up to 0.5 % below the peak
-    found = intensity("sa", motion, PIER, period=period)
-    assert found == pytest.approx(largest, rel=5e-3)
-    assert found <= largest * (1.0 + 1e-4)
+    value = intensity("sa", motion, PIER, period=period)
+    assert value == pytest.approx(largest, rel=5e-3)
+    assert value <= largest * (1.0 + 1e-4)
 
 
 def test_spectrum_tends_to_ground_displacement_and_acceleration_at_its_ends():
@@ -66,7 +66,7 @@ def test_spectrum_tends_to_ground_displacement_and_acceleration_at_its_ends():
 
 
 @pytest.mark.parametrize("name", list(MEASURES))
-def test_every_measure_grows_with_the_motion_and_not_with_its_sampling(name):
+def test_measures_scale_with_the_motion_and_are_independent_of_sampling(name):
     motion = sine(x=3.0, y=1.0)
     whole = intensity(name, motion, PIER)
     assert intensity(name, motion.scaled(2.5), PIER) == pytest.approx(2.5 * whole, rel=1e-12)
@@ -80,7 +80,7 @@ def test_every_measure_grows_with_the_motion_and_not_with_its_sampling(name):
 
 
 @pytest.mark.parametrize("name", ["peak_acceleration", "peak_velocity", "sa"])
-def test_a_resultant_knows_no_axes(name):
+def test_resultant_measures_are_invariant_under_rotation(name):
     motion = el_centro_1940()
     turned = motion.rotated(0.7)
     assert intensity(name, turned, PIER) == pytest.approx(intensity(name, motion, PIER), rel=1e-9)
@@ -117,7 +117,7 @@ def test_bad_input_of_intensity_measures_is_refused():
 
 @pytest.mark.parametrize("period", [0.3, 1.0, 2.7])
 @pytest.mark.parametrize("measure", MEASURES)
-def test_a_motion_scaled_to_a_level_has_that_intensity_at_any_period(measure: str, period: float) -> None:
+def test_motion_scaled_to_a_level_reaches_that_intensity_at_any_period(measure: str, period: float) -> None:
     motions = [el_centro_1940(), sine(3.0, 1.0)]
     asked = FragilityPlan(measure=measure, levels=[0.7, 1.9], period=period, friction=0.3)
     plan = RunPlan(cylinders={"pier": PIER}, motions=motions, methods=methods_of(["recess"]), options=asked)
@@ -136,7 +136,7 @@ def test_a_motion_scaled_to_a_level_has_that_intensity_at_any_period(measure: st
     assert alone[0] == pytest.approx(1.25 * first, rel=5e-3)  # of three digits
 
 
-def test_default_levels_are_the_same_shaking_in_every_measure():
+def test_default_levels_are_equivalent_in_every_measure():
     motions = [sine(3.0, 4.0), sine(3.0, 1.0)]
     bodies = {"pier": PIER}
     own = default_levels(bodies, motions, FragilityPlan())

@@ -1,4 +1,4 @@
-"""The lowest intensity that overturns: found between the steps of a grid and below it."""
+"""Search for the lowest overturning intensity, between the steps of a grid and below it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SAME = 1e-12  # rounding of the intensities
 
 
 class Window:
-    """Peak tilts about one window of overturning, and every intensity at which they were asked for."""
+    """Peak tilts about one overturning window, with a record of all intensities asked for."""
 
     def __init__(self, centre: float, width: float, flank: float) -> None:
         self.centre, self.width, self.flank = centre, width, flank
@@ -46,7 +46,7 @@ class Window:
 
 
 def search(window, start: float, grid: np.ndarray, known: np.ndarray | None = None) -> float:
-    """Search for the lowest of one cylinder."""
+    """Result of the search for the lowest overturning intensity of one cylinder."""
     known = window(grid) if known is None else known
     going = search_lowest(grid, known, start=start, step=STEP, alpha=ALPHA)
     return run_searches([going], lambda _, levels: window(levels), workers=1)[0]
@@ -156,7 +156,7 @@ def test_probes_go_down_until_none_overturns():
 @pytest.mark.slow
 @pytest.mark.parametrize(("width", "chance"), [(2.0 / 500, 1.0), (0.5 / 500, 0.5), (0.1 / 500, 0.1)])
 def test_narrow_gaps_are_found_at_the_stated_rate(width: float, chance: float):
-    """The probes lie one in each of 500 parts: a gap within one is hit as often as it is wide."""
+    """One probe lies in each of 500 parts: its chance to hit a gap inside equals the gap's share."""
     trials, hits = 200, 0
     for seed in range(trials):
         centre = 1.0 + np.random.default_rng(seed).uniform(0.1, 0.9)

@@ -44,10 +44,10 @@ def test_lognormal_motions_give_the_closed_form_without_a_fit() -> None:
     capacity = np.exp(rng.normal(math.log(0.8), 0.4, 4000))
     x = np.tile(np.log(np.geomspace(0.1, 8.0, 60)), (len(capacity), 1))
     y = (x >= np.log(capacity)[:, None]).astype(float)
-    found = frequencies_of(power_law(), x, y, np.full(len(x), -5.0), np.full(len(x), 9.0))
+    frequencies = frequencies_of(power_law(), x, y, np.full(len(x), -5.0), np.full(len(x), 9.0))
     # levels a factor e^d apart spread each capacity over such a step: an error of the order (k d)^2/12
     step = K * (x[0, 1] - x[0, 0])
-    assert found.total.mean() == pytest.approx(K0 * np.mean(capacity**-K), rel=1.5 * step**2 / 12.0)
+    assert frequencies.total.mean() == pytest.approx(K0 * np.mean(capacity**-K), rel=1.5 * step**2 / 12.0)
 
 
 def brute_force(hazard: HazardCurve, x: np.ndarray, y: np.ndarray, uplift: float, low: float) -> float:
@@ -68,13 +68,13 @@ def test_indicators_with_gaps_on_an_uneven_curve_are_integrated_exactly(seed: in
     x = np.sort(rng.uniform(math.log(0.1), math.log(2.5), (5, 7)), axis=1)
     y = rng.integers(0, 2, (5, 7)).astype(float)
     uplift, far = x[:, 0] - rng.uniform(-0.1, 0.5, 5), rng.uniform(-1.5, 0.5, 5)
-    found = frequencies_of(hazard, x, y, uplift, far)
+    frequencies = frequencies_of(hazard, x, y, uplift, far)
     for row in range(5):
         expected = brute_force(hazard, x[row], y[row], uplift[row], -math.inf)
-        assert found.total[row] == pytest.approx(expected, rel=1e-7, abs=1e-12)  # of the fine grid
+        assert frequencies.total[row] == pytest.approx(expected, rel=1e-7, abs=1e-12)  # of the fine grid
         if far[row] < min(x[row, -1], points[-1]):
             expected = brute_force(hazard, x[row], y[row], uplift[row], far[row])
-            assert found.far[row] == pytest.approx(expected, rel=1e-7, abs=1e-12)
+            assert frequencies.far[row] == pytest.approx(expected, rel=1e-7, abs=1e-12)
 
 
 def test_a_finer_curve_of_the_same_power_law_changes_nothing() -> None:
@@ -91,15 +91,15 @@ def test_a_finer_curve_of_the_same_power_law_changes_nothing() -> None:
 
 
 def single(hazard: HazardCurve, levels: list[float], y: list[float], uplift: float) -> dict[str, float]:
-    found = frequencies_of(hazard, np.log([levels]), np.array([y]), np.log([uplift]), np.array([9.0]))
-    return {name: float(getattr(found, name)[0]) for name in ("total", "head", "tail", "least", "most")}
+    frequencies = frequencies_of(hazard, np.log([levels]), np.array([y]), np.log([uplift]), np.array([9.0]))
+    return {name: float(getattr(frequencies, name)[0]) for name in ("total", "head", "tail", "least", "most")}
 
 
 @pytest.mark.parametrize(
     "y", [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 1.0, 1.0], [1.0, 0.0, 1.0]]
 )
-def test_cut_at_either_end_a_hazard_bounds_what_the_whole_one_gives(y: list[float]) -> None:
-    """Of a hazard that grows no steeper towards weak shaking, whatever of it and of the levels is left."""
+def test_truncated_hazard_bounds_the_frequency_of_the_whole_curve(y: list[float]) -> None:
+    """For a hazard that is not steeper at weak shaking, for any cut of hazard or levels."""
     points, levels = np.geomspace(0.01, 10.0, 13), [0.2, 0.5, 1.0]
     slope = 1.5 + np.log(points / 0.01) / 3.0
     rate = 0.1 * np.exp(
@@ -161,16 +161,16 @@ def interval_of(
     exposure = Exposure(x=np.tile(x, (len(y), 1)), y=y, made=~np.isnan(y), **ends)
     weights = resamples(len(y), 100, 1, strata=strata)
     single = exposure.frequencies(hazard)
-    found = frequency_interval(
+    interval = frequency_interval(
         hazard, exposure, single, resampled(exposure.terms(hazard, single), weights), 8
     )
-    return found.low, found.value, found.high
+    return interval.low, interval.value, interval.high
 
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("stripes", [False, True])
-def test_no_interval_of_a_frequency_has_no_width(stripes: bool) -> None:
-    """Whatever overturns, and wherever the hazard lies."""
+def test_every_frequency_interval_has_positive_width(stripes: bool) -> None:
+    """For all outcomes and all positions of the hazard."""
     levels = np.log([0.2, 0.4, 0.8, 1.6])
     strata = np.tile(np.arange(4), 8) if stripes else np.zeros(8, dtype=np.int64)
     first = np.random.default_rng(2).integers(0, 5, len(strata))
@@ -201,7 +201,7 @@ def test_nothing_below_uplift_overturns() -> None:
 
 
 @pytest.mark.parametrize("vertical", [0.0, 1.0])
-def test_the_scale_of_uplift_is_where_the_model_begins_to_uplift(vertical: float) -> None:
+def test_uplift_scale_is_the_uplift_threshold_of_the_model(vertical: float) -> None:
     rng = np.random.default_rng(3)
     a = rng.normal(size=(300, 3)) * [1.0, 1.0, vertical]
     motion = GroundMotion(a if vertical else a[:, :2], 0.01, "noise")
@@ -214,7 +214,7 @@ def test_the_scale_of_uplift_is_where_the_model_begins_to_uplift(vertical: float
 
 
 @pytest.fixture(scope="module")
-def found() -> rw.studies.Fragility:
+def fragility() -> rw.studies.Fragility:
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motions = rw.synthetic_motions(12, peak=1.0, seed=4)
     methods = ["recess", "planar-x"]
@@ -227,22 +227,25 @@ SITE = HazardCurve(np.geomspace(0.05, 5.0, 30), 1e-3 * np.geomspace(0.05, 5.0, 3
 
 
 @pytest.mark.slow
-def test_risk_has_a_row_for_each_cylinder_and_method(found: rw.studies.Fragility) -> None:
-    table = found.risk(SITE)
+def test_risk_has_a_row_for_each_cylinder_and_method(fragility: rw.studies.Fragility) -> None:
+    table = fragility.risk(SITE)
     assert list(table["method"]) == ["recess model", "planar x"]
     assert table["ratio"].iloc[0] == 1.0
     rate = table["annual_frequency"].iloc[0]
     assert table["annual_frequency_low"].iloc[0] <= rate <= table["annual_frequency_high"].iloc[0]
     assert table["probability"].iloc[0] == pytest.approx(-math.expm1(-50.0 * rate), rel=1e-12)
-    assert found.risk(SITE, years=1.0)["probability"].iloc[0] == pytest.approx(-math.expm1(-rate), rel=1e-12)
+    of_a_year = fragility.risk(SITE, years=1.0)["probability"].iloc[0]
+    assert of_a_year == pytest.approx(-math.expm1(-rate), rel=1e-12)
 
 
-def test_the_mean_over_motions_is_that_of_their_indicators(found: rw.studies.Fragility) -> None:
-    points = found.points
-    for method, rate in found.risk(SITE)[["method", "annual_frequency"]].itertuples(index=False):
+def test_mean_frequency_of_motions_is_that_of_the_mean_indicator(
+    fragility: rw.studies.Fragility,
+) -> None:
+    points = fragility.points
+    for method, rate in fragility.risk(SITE)[["method", "annual_frequency"]].itertuples(index=False):
         totals = []
         for motion, own in points.groupby("motion"):
-            runs = found.runs[(found.runs["motion"] == motion) & (found.runs["method"] == method)]
+            runs = fragility.runs[(fragility.runs["motion"] == motion) & (fragility.runs["method"] == method)]
             y = (runs.sort_values("step")["outcome"] == "overturned").to_numpy(float)
             own = own.sort_values("step")
             x = np.log(own["pga"].to_numpy())
@@ -251,23 +254,23 @@ def test_the_mean_over_motions_is_that_of_their_indicators(found: rw.studies.Fra
         assert rate == pytest.approx(np.mean(totals), rel=1e-6)
 
 
-def test_every_measure_of_a_hazard_is_reached(found: rw.studies.Fragility) -> None:
+def test_risk_accepts_hazards_of_every_intensity_measure(fragility: rw.studies.Fragility) -> None:
     by_resultant = HazardCurve(SITE.intensity, SITE.annual_frequency, measure="pga_resultant")
-    rates = [found.risk(each)["annual_frequency"].iloc[0] for each in (SITE, by_resultant)]
+    rates = [fragility.risk(each)["annual_frequency"].iloc[0] for each in (SITE, by_resultant)]
     assert rates[0] != rates[1]
     for measure in ("pgv", "pgv_resultant"):
-        table = found.risk(HazardCurve(SITE.intensity, SITE.annual_frequency, measure=measure))
+        table = fragility.risk(HazardCurve(SITE.intensity, SITE.annual_frequency, measure=measure))
         assert table.drop(columns=["ratio_low", "ratio_high"]).notna().all().all()
 
 
-def test_a_hazard_of_another_period_is_refused(found: rw.studies.Fragility) -> None:
+def test_a_hazard_of_another_period_is_refused(fragility: rw.studies.Fragility) -> None:
     other = HazardCurve(SITE.intensity, SITE.annual_frequency, measure="sa", period=0.5)
     with pytest.raises(ValueError, match=r"Sa at 0\.5 s, the fragility has it at 1 s: .*--period 0\.5"):
-        found.risk(other)
+        fragility.risk(other)
 
 
-def test_a_total_dispersion_raises_the_frequency_of_the_curve_alone(found: rw.studies.Fragility) -> None:
-    plain, wide = found.risk(SITE), found.risk(SITE, total_dispersion=0.8)
+def test_a_total_dispersion_raises_the_frequency_of_the_curve_alone(fragility: rw.studies.Fragility) -> None:
+    plain, wide = fragility.risk(SITE), fragility.risk(SITE, total_dispersion=0.8)
     assert (wide["annual_frequency_fit"] > plain["annual_frequency_fit"]).all()
     pd.testing.assert_series_equal(plain["annual_frequency"], wide["annual_frequency"])
 
@@ -283,18 +286,18 @@ def test_no_overturning_gives_an_upper_bound() -> None:
     assert none.with_risk(SITE).findings().of("risk")[0].key == "risk.none"
 
 
-def test_the_verdict_is_where_the_interval_lies_of_the_target(found: rw.studies.Fragility) -> None:
-    low, high = (float(found.risk(SITE)[f"annual_frequency{end}"].iloc[0]) for end in ("_low", "_high"))
+def test_verdict_compares_the_interval_with_the_target(fragility: rw.studies.Fragility) -> None:
+    low, high = (float(fragility.risk(SITE)[f"annual_frequency{end}"].iloc[0]) for end in ("_low", "_high"))
     for target, verdict in (
         (0.99 * low, "above"),
         (0.5 * (low + high), "inconclusive"),
         (1.01 * high, "below"),
     ):
-        said = found.with_risk(SITE, target=target)
+        said = fragility.with_risk(SITE, target=target)
         assert said.tables["risk"]["verdict"].iloc[0] == verdict
         assert said.findings().of("risk")[0].to_json()["values"]["reason"]["value"] == verdict
     with pytest.raises(ValueError, match="target must be positive"):
-        found.risk(SITE, target=0.0)
+        fragility.risk(SITE, target=0.0)
 
 
 def test_a_tendon_yields_at_peak_tension_equal_to_yield_force() -> None:
@@ -322,10 +325,10 @@ def test_a_tendon_yields_at_peak_tension_equal_to_yield_force() -> None:
 
 
 @pytest.mark.slow
-def test_motions_by_level_that_are_the_same_everywhere_are_stripes_of_all(
-    found: rw.studies.Fragility,
+def test_identical_motions_by_level_equal_one_common_set(
+    fragility: rw.studies.Fragility,
 ) -> None:
-    """One set of motions, stated for each level, gives the tables of the set at all levels."""
+    """One set of motions listed at each level gives the tables of a common set."""
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motions = rw.synthetic_motions(12, peak=1.0, seed=4)
     levels = [10, 1.5, 2, 3, 4.5, 7]
@@ -337,12 +340,12 @@ def test_motions_by_level_that_are_the_same_everywhere_are_stripes_of_all(
         workers=1,
     )
     for name in ("fits", "contrasts", "gaps", "counts"):
-        pd.testing.assert_frame_equal(again.tables[name], found.tables[name])
+        pd.testing.assert_frame_equal(again.tables[name], fragility.tables[name])
     assert again.facts["motions_of_levels"] == [12] * 6
 
 
 @pytest.mark.slow
-def test_each_level_is_shaken_by_motions_of_its_own() -> None:
+def test_each_level_uses_only_its_listed_motions() -> None:
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     motions = rw.synthetic_motions(36, peak=1.0, seed=4)
     own = {1.5: motions[:12], 3.0: motions[12:24], 9.0: motions[24:]}
@@ -370,7 +373,7 @@ def test_each_level_is_shaken_by_motions_of_its_own() -> None:
         run.risk(SITE)
 
 
-def test_motions_by_level_are_refused_where_they_are_not_one_set() -> None:
+def test_analyses_needing_one_motion_set_refuse_motions_by_level() -> None:
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     a, b = rw.synthetic_motions(2, peak=1.0, seed=4)
     with pytest.raises(ValueError, match="have levels of their own"):
@@ -385,22 +388,22 @@ def test_motions_by_level_are_refused_where_they_are_not_one_set() -> None:
 @pytest.mark.parametrize(
     ("lowest", "least", "most"), [(100.0, 1.0, 1.0), (5.05, 1.0, 1.0), (0.6, 0.0, 0.999)]
 )
-def test_a_factor_above_5_on_a_record_is_far(
-    found: rw.studies.Fragility, lowest: float, least: float, most: float
+def test_record_scale_factors_above_5_are_flagged(
+    fragility: rw.studies.Fragility, lowest: float, least: float, most: float
 ) -> None:
-    assert found.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # of synthetic motions none is
-    more = lowest / found.points["uplift_scale"].min()
-    points = found.points.assign(synthetic=False, scale=more * found.points["scale"])
+    assert fragility.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # of synthetic motions none is
+    more = lowest / fragility.points["uplift_scale"].min()
+    points = fragility.points.assign(synthetic=False, scale=more * fragility.points["scale"])
     points = points.assign(uplift_scale=more * points["uplift_scale"])
-    scaled = rw.studies.Fragility(tables={**found.tables, "points": points}, facts=found.facts)
+    scaled = rw.studies.Fragility(tables={**fragility.tables, "points": points}, facts=fragility.facts)
     share = scaled.risk(SITE)["far_share"].iloc[0]
     assert least - 1e-9 <= share <= most + 1e-9
     assert share > 0.0
 
 
-def test_the_margin_is_the_median_over_the_2475_year_intensity(found):
-    table = found.risk(SITE).set_index("method")
-    fits = found.fits[found.fits["limit"] == "overturned"].set_index("method")
+def test_the_margin_is_the_median_over_the_2475_year_intensity(fragility):
+    table = fragility.risk(SITE).set_index("method")
+    fits = fragility.fits[fragility.fits["limit"] == "overturned"].set_index("method")
     rare = SITE.intensity[0] * (SITE.annual_frequency[0] / (-math.log(0.98) / 50.0)) ** 0.5  # its power is -2
     for method in ("recess model", "planar x"):
         centre = math.log(table["margin"][method] * rare)

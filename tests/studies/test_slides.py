@@ -1,4 +1,4 @@
-"""An advice on what slides: the mode first, how far, and a gap."""
+"""Advice on a sliding body: mode, displacement, and gap."""
 
 from __future__ import annotations
 

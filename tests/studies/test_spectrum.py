@@ -1,4 +1,4 @@
-"""Overturning spectra: what is run in each cell, and what is read from a grid."""
+"""Overturning spectra: the run of each cell, and the boundary from a grid."""
 
 import dataclasses
 import math

@@ -1,4 +1,4 @@
-"""Islands and shares, from grids made by hand."""
+"""Safe gaps and overturning shares from handwritten grids."""
 
 import dataclasses
 import math
@@ -26,7 +26,7 @@ LEVELS = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 
 
 def made_up(space: list[str], x: list[str], y: list[str]) -> TiltMaps:
-    """Make a spectrum of rows of letters, a row for each size: X overturned, o tilts, O more, ? failed."""
+    """Spectrum from rows of letters, one row per size: X overturned, o tilts, O tilts more, ? failed."""
     tilts = {"X": FALL, "o": 0.01, "O": 0.02, ".": 0.0, "?": math.nan}
     peaks = {
         name: np.array([[tilts[letter] for letter in row] for row in rows])

@@ -1,4 +1,4 @@
-"""Fragility, spectrum, sweep and ensemble with a tendon: runs of it, and bounds that follow its uplift."""
+"""Fragility, spectrum, sweep and ensemble with a tendon: their runs, and their levels above its uplift."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_balance_tilt_without_tendon_is_exactly_alpha() -> None:
 def test_a_ring_run_righted_by_a_tendon_has_not_overturned(
     share: float, duration: float, outcome: str
 ) -> None:
-    """The tendon moves the balance to 1.63 alpha: a wall holds what leans by more, and not what swings."""
+    """The balance tilt is 1.63 alpha with the tendon: a wall holds bodies beyond it only."""
     initial, tendon = rw.InitialState(share * PIER.alpha), rw.Tendon(stiffness=2.0)
     case = rw.Case(PIER, initial=initial, duration=duration, tendon=tendon)
     trace = multibody.simulate(

@@ -1,4 +1,4 @@
-"""A study: tables in the order of its tasks, kept, and what becomes of those whose process died."""
+"""Base of the studies: order of tables, cache, and tasks whose process died."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The limits of the reduced model: measured on a tiny grid, kept, and changed by a changed constant."""
+"""Limits of the reduced model on a tiny grid: measured, cached, and changed with a model constant."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def said(tables: Tables, structure: Structure = ALONE) -> dict[str, Mapping[str,
 
 @contextmanager
 def heavier_models() -> Iterator[None]:
-    """The reduced models, and nothing else, have another transverse inertia."""
+    """Reduced models with a wrong transverse inertia; engines are unchanged."""
 
     def heavier_body(cylinder: Cylinder, gravity: float, rolling_resistance: float = 0.0) -> Body:
         true = body.body_of(cylinder, gravity, rolling_resistance)
@@ -91,7 +91,7 @@ def heavier_models() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def heavier(tables: Tables, tmp_path_factory: pytest.TempPathFactory) -> Tables:
-    """The tables of these models; an engine run of the same problem is the same, as a test shows on one."""
+    """Tables of the wrong models; engine runs are reused, as one test confirms."""
     with heavier_models(), kept_engine_runs(tmp_path_factory.getbasetemp()):
         return measure_all(TINY, tmp_path_factory.mktemp("heavier"), workers=1)
 
@@ -334,7 +334,7 @@ ENGINE = 1e-4
 
 
 def off_models(trace: Trace) -> dict[str, float]:
-    """Relative RMS difference of the tilt from the models, by their support."""
+    """Relative RMS tilt difference from the models, by their support."""
     models = {support: simulate(trace.case, support=support) for support in ("recess", "flat")}
     return {name: tilt_rms_relative(make_pair(SQUAT, model, trace)) for name, model in models.items()}
 

@@ -93,7 +93,7 @@ class Judgement:
 
 
 def read_motion(run: Run, values: Values) -> Motion | None:
-    """Return the motion that columns tell; None where a value is missing or the time does not rise."""
+    """Motion that columns tell; None where a value is missing or the time does not rise."""
     size = {name: run[name] for name in ("base_radius", "mass_centre_height")}
     pose = pose_of(values, **size, recess=run["support"] == "recess")
     if not (np.all(np.diff(values["time"]) > 0.0) and np.isfinite(pose.axis).all()):
@@ -123,7 +123,7 @@ def maxima(motion: Motion) -> Iterator[tuple[float, float, float]]:
 
 
 def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
-    """Return the cubic through the four nearest of evenly spaced samples; NaN outside them."""
+    """Cubic through the four nearest of evenly spaced samples; NaN outside them."""
     at = (x - X[0]) * (len(X) - 1) / (X[-1] - X[0])
     first = np.clip(np.floor(at).astype(int) - 1, 0, len(X) - 4)
     a, b, c, d = (at - first - k for k in range(4))
@@ -133,7 +133,7 @@ def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
 
 
 def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
-    """Return a quantity of reference.json; NaN where it is not known, inf where it does not happen."""
+    """Quantity of reference.json; NaN where it is not known, inf where it does not happen."""
     name, _, digits = quantity.rpartition("_")
     if name == "kept":  # of the energy at a closing, between two maxima
         tops = [measured(f"maximum_{int(digits) + k}", motion, run, wanted) for k in (0, 1)]
@@ -191,7 +191,7 @@ class Case:
         self.known = {name: self.reference(name) for name in self.runs if "alpha" in self.runs[name]}
 
     def reference(self, name: str) -> Motion | None:
-        """Return the motion of reference.csv of a run; None where it has none."""
+        """Motion of reference.csv of a run; None where it has none."""
         run = self.runs[name]
         own = {
             key: self.table.get(f"{key}:{name}", self.table.get(key)) for key in ("tilt", "azimuth", "x", "y")
@@ -205,7 +205,7 @@ class Case:
         return motion_at(self.table["time"] * run.get("time_unit", 1.0), own["tilt"], azimuth, path)
 
     def judge(self, motions: Motions) -> tuple[Outcome, ...]:
-        """Return the outcome of every criterion; what some runs only tell is not judged."""
+        """Outcome of every criterion; what some runs only tell is not judged."""
         outcomes = []
         for one in self.accept["criteria"]:
             runs = [name for name in one.get("runs", self.runs) if name in motions]
@@ -227,11 +227,11 @@ class Case:
         return tuple(outcomes)
 
     def score(self, motions: Motions) -> float:
-        """Return the largest error over its bound for a pass."""
+        """Largest error over its bound for a pass."""
         return max((one.error / one.bounds[-1] for one in self.judge(motions) if one.run), default=math.inf)
 
     def difference(self, one: dict[str, Any], name: str, motion: Motion) -> float:
-        """Return the root mean square difference from the reference in the window of a criterion."""
+        """Root mean square difference from the reference in the window of a criterion."""
         run, known = self.runs[name], self.known[name]
         assert known is not None  # a case that compares traces has them
         assert known.lean is not None
@@ -292,7 +292,7 @@ class Case:
         yield from ((change,) for change in readings(tables[names[0]].values))
 
     def mistakes(self, tables: Mapping[str, Table], motions: Motions) -> tuple[Mistake, ...]:
-        """Return the fewest mistakes without which the case is passed, or as much better."""
+        """Fewest mistakes without which the case is passed, or as much better."""
         enough = min(1.0, self.score(motions) / ENOUGH)
         worst = sorted(motions, key=lambda name: -self.score({name: motions[name]}))[:EXPLAINED_RUNS]
         for changes in self.candidates(tables, worst):

@@ -19,7 +19,7 @@ ORDER = ("exact", "good", "pass", "fail", "rejected")
 
 
 def entries() -> list[dict[str, Any]]:
-    """Return one entry for each folder of results."""
+    """One entry for each folder of results."""
     digests = {
         path.parent.name: hashlib.sha256(path.read_bytes()).hexdigest()
         for path in HERE.glob("cases/*/reference.json")
@@ -51,17 +51,17 @@ def entries() -> list[dict[str, Any]]:
 
 
 def passes(entry: dict[str, Any]) -> int:
-    """Return how many of the cases that were run it passes."""
+    """Number of runnable cases that an entry passes."""
     return sum(one["verdict"] in ORDER[:3] for one in entry["cases"].values())
 
 
 def _share(one: dict[str, Any]) -> float:
-    """Return an error over its bound for a pass."""
+    """Error over its bound for a pass."""
     return float("inf") if one["error"] is None else float(one["error"] / one["bounds"][-1])
 
 
 def cell(entry: dict[str, Any], case: str) -> str:
-    """Return the verdict and the worst error, or why there is none."""
+    """Verdict and worst error, or the reason for none."""
     one = entry["cases"].get(case)
     if one is None:
         known = (word for word in ("cannot", "left_out") if case in entry.get(word, {}))
@@ -76,7 +76,7 @@ def cell(entry: dict[str, Any], case: str) -> str:
 
 
 def rows(results: list[dict[str, Any]]) -> list[list[str]]:
-    """Return the table: a line for each entry, its share of passes first, and a column for each case."""
+    """Table with one row per entry, highest pass share first, and one column per case."""
     titles = {
         path.parent.name: json.loads(path.read_text("utf-8"))["title"]
         for path in HERE.glob("cases/*/case.json")
@@ -94,7 +94,7 @@ def rows(results: list[dict[str, Any]]) -> list[list[str]]:
 
 
 def makers(results: list[dict[str, Any]]) -> list[list[str]]:
-    """Return the table of what was run: a line for each entry."""
+    """Table of the entries: code, version, settings, time step."""
     lines = [["code", "version", "settings", "time step", "processor time of a step", "machine", "commits"]]
     for entry in results:
         cost = entry["seconds_a_step"]
@@ -106,13 +106,13 @@ def makers(results: list[dict[str, Any]]) -> list[list[str]]:
 
 
 def markdown(table: list[list[str]]) -> str:
-    """Return a table in Markdown."""
+    """Table in Markdown."""
     head, *body = (f"| {' | '.join(row)} |" for row in table)
     return "\n".join([head, "|" + "---|" * len(table[0]), *body])
 
 
 def page(table: list[list[str]]) -> str:
-    """Return a table in HTML, which scrolls by itself where a screen is narrow."""
+    """Table in HTML, which scrolls by itself where a screen is narrow."""
     head, *body = table
     text = ["<tr>", *(f"<th>{html.escape(one)}</th>" for one in head), "</tr>"]
     for first, *row in body:

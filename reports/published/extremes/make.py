@@ -60,7 +60,7 @@ def page_of(results: Extremes) -> Page:
 
 
 def _answer(counts: Mapping[str, int], total: int) -> str:
-    """How many runs are wrong without a word; or what became of all, on three lines of the document."""
+    """Number of silently wrong runs, or of runs by verdict, on three lines of the document."""
     if silent := counts["silent"]:
         return f"{silent} of {total} runs {'is' if silent == 1 else 'are'} silently wrong."
     return (
@@ -71,7 +71,7 @@ def _answer(counts: Mapping[str, int], total: int) -> str:
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:
-    """Count of the runs of each method with each verdict, and the largest error of those that are fine."""
+    """Runs of each method by verdict, and the largest error of the fine ones."""
     rows: list[dict[str, object]] = []
     for method, own in runs.groupby("method", sort=False):
         counts = {name: int((own["verdict"] == name).sum()) for name in WORDS}
@@ -80,7 +80,7 @@ def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def _not_fine(runs: pd.DataFrame) -> list[dict[str, object]]:
-    """The runs that are not fine, one row for those that the same thing limits."""
+    """Runs that are not fine, one row per limiting condition."""
     keys = ["extreme", "value", "verdict", "limit", "refusal"]
     rows: list[dict[str, object]] = []
     for key, alike in runs[runs["verdict"] != "fine"].groupby(keys, sort=False):
@@ -105,7 +105,7 @@ def _codes(cell: str) -> list[str]:
 
 
 def claims(results: Extremes) -> list[str]:
-    """Return the runs that are wrong in silence, or refused for a reason that no request of the scan has."""
+    """Silently wrong runs, and runs refused without the one allowed reason."""
     return [
         f"{row['extreme']} {row['value']}, {row['method']}: {row['verdict']} {row['refusal']}"
         for row in results.extremes.to_dict("records")

@@ -151,12 +151,12 @@ class Extremes(Results, kind="extremes"):
     """
 
     def headline(self) -> dict[str, int]:
-        """Return the number of runs, and of those with each verdict."""
+        """Number of runs, and of those with each verdict."""
         return {"runs": len(self.extremes), **Counter(map(str, self.extremes["verdict"]))}
 
 
 def measure() -> Extremes:
-    """Return the verdicts on every condition by every method that is installed."""
+    """Verdicts on every condition by every method that is installed."""
     tasks = [(condition, run) for condition in conditions() for run in methods()]
     with ProcessPoolExecutor() as workers:
         rows = list(workers.map(measure_task, tasks))
@@ -164,14 +164,14 @@ def measure() -> Extremes:
 
 
 def measure_task(task: Task) -> dict[str, object]:
-    """Return the row of one condition and method."""
+    """Row of one condition and method."""
     condition, run = task
     named = {"extreme": condition.extreme, "value": condition.value, "method": str(run)}
     return named | dataclasses.asdict(judge(condition, run))
 
 
 def methods() -> tuple[Run, ...]:
-    """Return the reduced models, and each support of each of our engines that is installed."""
+    """Reduced models, and each support of each of our engines that is installed."""
     models = (Run(None, support) for support in reduced.SUPPORTS)
     engines = (
         Run(name, support)
@@ -226,7 +226,7 @@ def _release(
     length: float = _LENGTH,
     friction: float = 5.0,
 ) -> Case:
-    """A release at alpha/2; rate and length scale with size and gravity in Froude's sense."""
+    """Release at alpha/2, with rate and length scaled by size and gravity (Froude)."""
     unit = _time_scale(size, gravity)
     cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
     release = InitialState(0.5 * cylinder.alpha, rolling_rate=rate / unit)
@@ -267,7 +267,7 @@ def _simulate(case: Case, run: Run, condition: Condition) -> Trace:
 
 
 def _request(condition: Condition, run: Run) -> tuple[Case, Run]:
-    """The case, as one vertical plane can hold it, and the run that a condition asks of a method."""
+    """Case (in one vertical plane where needed) and run of a condition by a method."""
     case = condition.case
     if run.is_model:
         if run.is_planar and condition.extreme != "spin" and case.initial is not None:
@@ -290,7 +290,7 @@ def _time_scale(size: float, gravity: float) -> float:
 
 
 def _contact_time(run: Run) -> str:
-    """The setting that is the time of a run's contact; "" without one."""
+    """Setting that is the contact time constant of a run; "" without one."""
     return "" if run.is_model else multibody.find_engine(run.engine_name).facts.contact_time
 
 
@@ -353,7 +353,7 @@ def _engine(condition: Condition, run: Run, trace: Trace) -> Verdict:
 
 
 def _explanation(facts: Iterable[Diagnostic], kinds: frozenset[str], begins: float) -> str:
-    """The code of the first diagnostic of these kinds that begins no later than an error; "" without."""
+    """Code of the first diagnostic of these kinds no later than an error; "" if none."""
     able = [fact for fact in facts if fact.code in kinds and fact.time <= begins]
     return min(able, key=lambda fact: fact.time).code if able else ""
 
@@ -366,7 +366,7 @@ def _energy_error(trace: Trace) -> float:
 
 
 def _tilt_error(reference: Trace, trial: Trace, until: float = math.inf) -> tuple[float, float]:
-    """Largest difference of the tilt up to a time [alpha], and when it exceeds `FINE` [s]."""
+    """Largest tilt difference up to a time [alpha], and the first time it exceeds `FINE` [s]."""
     case = trial.case
     time = reference.time[reference.time <= min(until, case.length, trial.time[-1] + 1e-9)]
     off = np.abs(np.interp(time, trial.time, trial.tilt) - reference.tilt[: len(time)]) / case.cylinder.alpha

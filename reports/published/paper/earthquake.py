@@ -76,7 +76,7 @@ class Shaken:
 
 
 def shaken() -> Shaken:
-    """Run the record, its neighbours that do not overturn, and the perturbed copy."""
+    """Run the record, its standing neighbours (scaled records), and the perturbed copy."""
     motion = el_centro_1940()
     trace = _run(Case(PIER, motion))
     copy = _run(Case(PIER, motion.scaled(1.0 + NUDGE)))
@@ -102,13 +102,13 @@ def _run(case: Case, sample_step: float = _SAMPLE_STEP) -> Trace:
 
 
 def strong_end(motion: GroundMotion) -> float:
-    """Return the last time the record by itself could uplift the cylinder, (25) [s]."""
+    """Last time at which the record could uplift the resting cylinder, equation (25) [s]."""
     over = np.hypot(*motion.acceleration[:, :2].T) >= _GRAVITY * PIER.tan_alpha
     return float(np.flatnonzero(over)[-1] * motion.time_step)
 
 
 def parts(trace: Trace, end: float) -> tuple[Part, Part]:
-    """Return the motion of the contact point before and after `end` [s]."""
+    """Motion of the contact point before and after `end` [s]."""
     time, turn = (trace.passes[name].to_numpy() for name in ("time", "angle_of_turn"))
     half = half_turn_times(trace)
     energy = np.interp(time, trace.time, trace.energy)
@@ -130,14 +130,14 @@ def parts(trace: Trace, end: float) -> tuple[Part, Part]:
 
 
 def abrupt_time() -> float:
-    """Return the time below which the middle half of a turn counts as abrupt [s]."""
+    """Time below which the middle half of a turn counts as abrupt [s]."""
     # a turn is half of the way round, or a little more
     steady = 0.25 * float(reduced.wobbling_period(PIER, 0.5 * PIER.alpha))
     return steady / _ABRUPT
 
 
 def half_turn_times(trace: Trace) -> Array:
-    """Return for each pass the time in which the middle half of its turn is made (n,) [s]."""
+    """Duration of the middle half of the turn for each pass (n,) [s]."""
     time, angle = trace.time, trace.rolling_angle
     times = []
     for at, turn in zip(trace.passes["time"], trace.passes["angle_of_turn"], strict=True):

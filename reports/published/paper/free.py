@@ -61,7 +61,7 @@ def curve(table: pd.DataFrame, name: str, tan_alpha: float = np.nan) -> tuple[Ar
 
 
 def _frequency(cylinder: RockingBody) -> float:
-    """P of a homogeneous cylinder [1/s], equation (23)."""
+    """Frequency parameter p of a homogeneous cylinder [1/s], equation (23)."""
     return float(np.sqrt(12.0 / (15.0 + np.cos(cylinder.alpha) ** 2) * _GRAVITY / cylinder.semidiagonal))
 
 
@@ -123,7 +123,7 @@ RESIDUAL = 1e-6
 
 
 def free_modes() -> dict[str, Trace]:
-    """Run the three releases, and one of yet smaller spin."""
+    """Run the three releases, and one with even smaller spin."""
     steady = reduced.steady_wobble_rate(PIER, RELEASE * PIER.alpha)
     spins = {SPIN: _SMALL_SPIN, STEADY: steady, BOTH: _SHARE_OF_STEADY * steady, SMALLER: 0.1 * _SMALL_SPIN}
     return {
@@ -141,7 +141,7 @@ def _release(spin: float) -> InitialState:
 
 
 def drawn_samples(trace: Trace, points: int = _POINTS) -> pd.DataFrame:
-    """Return the samples of a motion for a figure: its extremes, and as many samples as can be seen."""
+    """Samples of a motion for a figure: extremes, and as many others as are visible."""
     keep = kept_samples(trace.tilt, trace.tilt_rate, trace.rolling_rate, points=points)
     names = ("time", "tilt", "tilt_rate", "rolling_angle", "rolling_rate")
     table = pd.DataFrame({name: getattr(trace, name)[keep] for name in names})
@@ -150,7 +150,7 @@ def drawn_samples(trace: Trace, points: int = _POINTS) -> pd.DataFrame:
 
 
 def to_frame(modes: Mapping[str, Trace]) -> pd.DataFrame:
-    """Return the samples drawn, one row each, with the mode in the first column."""
+    """Samples drawn, one row each, with the mode in the first column."""
     tables = [drawn_samples(trace).assign(mode=mode) for mode, trace in modes.items() if mode != SMALLER]
     return pd.concat(tables, ignore_index=True)
 
@@ -184,7 +184,7 @@ def _force(modes: Mapping[str, Trace]) -> Statement:
 
 
 def _largest_force(trace: Trace) -> float:
-    """Return the largest normal force about the first pass [weights], however small the tilt there.
+    """Largest normal force about the first pass [weights], at arbitrarily small tilt.
 
     Demands on ground and recess are taken above a tilt that a smaller spin passes below; the statement of
     the paper is on the model.
@@ -225,5 +225,5 @@ def _place(modes: Mapping[str, Trace]) -> Statement:
 
 
 def displacement(tilt: float) -> float:
-    """Return the distance of the centre of the base from its place, over b: 1 - cos(theta), equation (10)."""
+    """Distance of the centre of the base from its place, over b: 1 - cos(theta), equation (10)."""
     return 2.0 * math.sin(0.5 * tilt) ** 2

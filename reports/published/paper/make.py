@@ -46,7 +46,7 @@ class Paper(Results, kind="paper"):
     """
 
     def headline(self) -> dict[str, int]:
-        """Return the number of statements with each verdict."""
+        """Number of statements with each verdict."""
         return {**Counter(each.verdict for each in from_frame(self.statements))}
 
 
@@ -71,7 +71,7 @@ def measure(given: argparse.Namespace) -> Paper:
 
 
 def page_of(paper: Paper) -> Page:
-    """Return the page of the figures."""
+    """Page of the figures."""
     tables, spectrum = paper.tables, OverturningSpectrum(tables=paper.tables, facts=paper.facts)
     by_name = {each.name: each for each in from_frame(paper.statements)}
     shaken = {**by_name["abrupt"].numbers, "time_step": spectrum.maps.motion.time_step}
@@ -103,19 +103,19 @@ def page_of(paper: Paper) -> Page:
 
 
 def _judgement(statement: Statement) -> str:
-    """Whether a statement of the paper is borne out, and on which axes."""
+    """Verdict on a statement of the paper, with the axes it holds on."""
     return f"{'On equal shaking it' if statement.name.endswith('equal') else 'It'} {statement.verdict}."
 
 
 def _linear_range(numbers: Mapping[str, float]) -> str:
-    """Up to which slenderness Housner's linearised period holds."""
+    """Slenderness up to which Housner's linearised period holds."""
     if not (good := numbers["good"]):
         return "never so close"
     return f"within {number(numbers['tolerance'], 'percent')} up to tan α =\n{number(good)}"
 
 
 def _copy_agreement(numbers: Mapping[str, float]) -> str:
-    """From when on a perturbed copy is another response."""
+    """Time from which a perturbed copy differs."""
     if math.isfinite(until := numbers["agreement"]):
         return (
             f"differs by 1 % of α from {number(until, '.1f')} s on: passes close\nto upright amplify every "
@@ -125,7 +125,7 @@ def _copy_agreement(numbers: Mapping[str, float]) -> str:
 
 
 def _at_the_end(numbers: Mapping[str, float]) -> str:
-    """Whether the cylinder is back in its place when the record ends."""
+    """Whether the cylinder has returned to its place at the end of the record."""
     if numbers["rests"]:
         return "it stands where it stood"
     return (
@@ -135,7 +135,7 @@ def _at_the_end(numbers: Mapping[str, float]) -> str:
 
 
 def _lower_from(numbers: Mapping[str, float]) -> str:
-    """From which size up 3D is the lowest at every size; empty where the largest is not among them."""
+    """Size from which on the 3D boundary is lowest at every size; empty if not at the largest."""
     size = numbers["from"]
     return "" if math.isnan(size) else f", and from R = {number(size)} m up at every size"
 
@@ -233,7 +233,7 @@ def _column(rows: pd.DataFrame, name: str) -> Array:
 
 
 def earthquake_picture(table: pd.DataFrame, record: pd.DataFrame, numbers: Mapping[str, float]) -> Picture:
-    """Return figure 5: response above, record below, the strong part shaded."""
+    """Figure 5: response above, record below, strong part shaded."""
     cylinder, gravity = PIER, 9.81
     marks: list[Layer] = [Rule(at=numbers["from"], until=numbers["until"], axis="x", colour=SHADED)]
     if math.isfinite(numbers["agreement"]):
@@ -270,7 +270,7 @@ def _over_time(x: Array, y: Array, axis: Axis, marks: list[Layer], style: Style,
 
 
 def _signed_log(values: Array) -> Array:
-    """Linear below 1, logarithmic above, of both signs."""
+    """Signed logarithmic scale, linear below 1."""
     size = np.abs(values)
     return np.asarray(np.sign(values) * np.where(size < 1.0, size, 1.0 + np.log10(np.maximum(size, 1.0))))
 
@@ -304,7 +304,7 @@ def overturning_picture(spectrum: OverturningSpectrum) -> Picture:
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    """Add the option."""
+    """Add the option of this script."""
     parser.add_argument(
         "--grid", type=int, default=100, help="sizes and intensities of figure 6 (%(default)s)"
     )

@@ -37,7 +37,7 @@ def spectrum_of(grid: int) -> OverturningSpectrum:
 
 
 def lowest_on_axes(spectrum: OverturningSpectrum, *, own: bool) -> Mapping[str, Array]:
-    """Return the lowest overturning intensities (n_R,) of each series, over its own peak or that of all."""
+    """Lowest overturning intensities (n_R,) of each series, over its component's peak or the resultant's."""
     return {
         name: lowest * (spectrum.maps.component_share(name) if own else 1.0)
         for name, lowest in spectrum.maps.lowest.items()
@@ -69,7 +69,7 @@ def statements(spectrum: OverturningSpectrum) -> list[Statement]:
 
 
 def unconservative_from(spectrum: OverturningSpectrum) -> float:
-    """Return the size [m] from which on 3D has the lower overturning intensity at every size; NaN if none."""
+    """Size [m] from which on 3D has the lower overturning intensity at every size; NaN if none."""
     maps = spectrum.maps
     space, x, y = (np.nan_to_num(each, nan=math.inf) for each in maps.lowest.values())
     higher = ~(space < np.minimum(x, y) - maps.plan.search_step)
@@ -79,7 +79,7 @@ def unconservative_from(spectrum: OverturningSpectrum) -> float:
 
 
 def _lower(lowest: Mapping[str, Array], chosen: NDArray[np.bool_]) -> dict[str, float]:
-    """Return at how many sizes the curve of 3D is the lowest, and how much lower it is in the median.
+    """Number of sizes at which the 3D boundary is lowest, and its median relative distance.
 
     The ratio is of the lower planar curve to that of 3D; above 1 planar analysis is unconservative.
     """

@@ -24,7 +24,7 @@ class Statement:
 
 
 def verdict_of(*parts: bool) -> str:
-    """Return the verdict on a statement with several parts."""
+    """Verdict on a statement with several parts."""
     if all(parts):
         return HOLDS
     return HOLDS_IN_PART if any(parts) else DOES_NOT_HOLD
@@ -41,7 +41,7 @@ def to_frame(statements: Sequence[Statement]) -> pd.DataFrame:
 
 
 def from_frame(table: pd.DataFrame) -> list[Statement]:
-    """Return the statements of the table of `to_frame`."""
+    """Statements of the table of `to_frame`."""
     entries = []
     for name, rows in table.groupby("statement", sort=False):
         first, numbers = rows.iloc[0], dict(zip(rows["number"], rows["value"].astype(float), strict=True))

@@ -39,7 +39,7 @@ _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact") 
 
 
 def pictures(results: Tradeoff) -> list[Picture]:
-    """Return a picture for each problem; its panels share their axes, and no line has a family of its own."""
+    """Picture of each problem with shared axes; variants of one line are lines of their own."""
     return [_picture(results, name) for name in TITLES if (results.points["problem"] == name).any()]
 
 
@@ -102,7 +102,7 @@ def _lines(points: pd.DataFrame) -> list[Line]:
 
 
 def _axis(label: str, unit: str, values: pd.Series[float]) -> Axis:
-    """The decades in which values are, so that all panels have the same."""
+    """Logarithmic axis over whole decades, common to all panels."""
     if values.empty:
         return Axis(label=label, unit=unit, log=True)
     low, high = np.log10(values.min()) - 0.05, np.log10(values.max()) + 0.05

@@ -53,7 +53,7 @@ def page_of(results: Tradeoff) -> Page:
 
 
 def _answer(least: float, largest: float) -> str:
-    """Cost of an engine, on two lines of the document; NaN where none is as exact as was asked."""
+    """Cost of an engine, on two lines of the document; NaN if it never reaches the asked error."""
     if not least > 0.0:
         return "No engine reaches any of the target errors."
     return (
@@ -64,7 +64,7 @@ def _answer(least: float, largest: float) -> str:
 
 
 def _of_scipy(least: float, largest: float) -> str:
-    """Cost of the cheapest solver of scipy; empty where none is as exact as was asked."""
+    """Cost of the cheapest scipy solver; empty if none reaches the asked error."""
     if not least > 0.0:
         return ""
     return (
@@ -74,14 +74,14 @@ def _of_scipy(least: float, largest: float) -> str:
 
 
 def _of_load(before: float, after: float) -> str:
-    """How busy the machine was; empty where it does not say."""
+    """Machine load in words; empty if unknown."""
     if not math.isfinite(before):
         return ""
     return f"The load of the machine was {number(before, '.1f')} before and {number(after, '.1f')} after."
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:
-    """The rows of a table, with the title of their problem and the unit of its errors."""
+    """Rows of a table with problem titles and error units."""
     titles = {name: f"{title} [{ERRORS[name][1]}]" for name, title in TITLES.items()}
     return [
         {str(name): value for name, value in row.items()}
@@ -90,7 +90,7 @@ def _rows(table: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def _ways(cheapest: pd.DataFrame) -> pd.DataFrame:
-    """The cheapest way of each family in words, a row for each problem, support and error asked for."""
+    """Cheapest method of each family in words, one row per problem, support and asked error."""
     said = [
         f"{number(row['ratio'], '.2g' if row['ratio'] < 10.0 else ',.0f')}: {row['line']}, {row['value']:g}"
         for row in cheapest.to_dict("records")
@@ -102,7 +102,7 @@ def _ways(cheapest: pd.DataFrame) -> pd.DataFrame:
 
 
 def _within_chance(results: Tradeoff) -> list[dict[str, object]]:
-    """Count the points of engines that are nearer to their reference than another ensemble, by support."""
+    """Count engine points within the sampling distance of an ensemble to their reference, by support."""
     points = results.points[
         (results.points["problem"] == "peaks") & ~results.points["family"].isin(_NOT_ENGINES)
     ]

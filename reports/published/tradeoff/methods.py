@@ -1,4 +1,4 @@
-"""The methods that solve a problem: a line each, with the tolerances or time steps it is solved at.
+"""Methods that solve a problem, one line each over tolerances or time steps.
 
 Among them scipy's solvers on the equations of the recess model, as somebody without this package would use
 them: as one writes them for scipy, in plain Python; numba may compile them, and scipy still calls them
@@ -54,7 +54,7 @@ _DOUBLE = 2.0**-53  # rounding of double precision
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MethodResult:
-    """Result of a method on one case: the quantity, empty where it failed, and codes or its refusal."""
+    """Result of a method on one case: quantity (empty if failed), and diagnostic codes or refusal."""
 
     quantity: Array
     said: str = ""
@@ -65,7 +65,7 @@ Solve = Callable[[Case], MethodResult]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Method:
-    """One point of one line.
+    """One point of a line: a method at one tolerance or time step.
 
     Attributes
     ----------
@@ -94,12 +94,12 @@ class Method:
 
     @property
     def base(self) -> bool:
-        """Whether all times are multiples of this one's."""
+        """Whether this method is the unit of all computing times."""
         return self.line == BASE_LINE and self.value == BASE_TOLERANCE
 
 
 def methods_for(problem: Problem, *, quick: bool = False) -> list[Method]:
-    """Return all methods that can answer a problem with what is installed here."""
+    """All installed methods that can solve a problem."""
     return [*_model_methods(problem, quick), *_scipy(problem, quick), *_engines(problem, quick)]
 
 
@@ -112,7 +112,7 @@ def _line(
     support: str = RECESS,
     knob: str = "tolerance",
 ) -> Iterator[Method]:
-    """Yield the points of a line, of which `solved` has the solution by the value of its knob."""
+    """Yield the points of a line; `solved`: solutions by setting value."""
     for value, solve in solved.items():
         yield Method(
             support=support, panel=panel, family=family, line=line, knob=knob, value=value, solve=solve
@@ -132,7 +132,7 @@ def _model_methods(problem: Problem, quick: bool) -> Iterator[Method]:
 
 
 def rest_line(rest_tilt: float) -> str:
-    """Return the line of the recess model with a rest threshold of its own."""
+    """Line of the recess model over values of its rest threshold."""
     return f"rest threshold {rest_tilt:g}"
 
 
@@ -175,7 +175,7 @@ def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
 
 
 def _variants(problem: Problem, engine: str, quick: bool) -> Iterator[Method]:
-    """Other integrators and other contact than the default, in a recess."""
+    """Lines of other integrators and contact settings, in a recess."""
     facts, steps = multibody.find_engine(engine).facts, problem.few_steps
     for given in facts.alternatives.values():
         name = given.get("integrator")
@@ -212,7 +212,7 @@ def _result(problem: Problem, trace: Trace) -> MethodResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rates:
-    """The equations of a case and where they start.
+    """Equations of motion of a case with their initial state.
 
     Attributes
     ----------
@@ -231,7 +231,7 @@ class Rates:
 
 
 def start_of(case: Case, *, compiled: bool) -> Rates:
-    """Return the equations of a case from its release, or from just after its uplift."""
+    """Equations of a case with their initial state at release, or just after uplift."""
     begin = _departure(case) if case.initial is None else _INSTANT
     reach = reduced.simulate(dataclasses.replace(case, duration=begin), rtol=TIGHT)
     names = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
@@ -249,7 +249,7 @@ def _inertia(case: Case, theta: float) -> float:
 
 
 def rates_of(case: Case, *, compiled: bool) -> RatesFunction:
-    """Return the equations of a case, (t, y) -> y', as plain Python or compiled."""
+    """Equations of a case, (t, y) -> y', as plain Python or compiled."""
     motion = case.motion or GroundMotion(np.zeros((2, 2)), case.length)
     # still ground for the swing at the end, and a sample more for the last stage of a solver
     beyond = math.ceil(_SWING / (motion.time_step * math.sqrt(9.81 / case.cylinder.semidiagonal))) + 2
@@ -286,7 +286,7 @@ def rates_of(case: Case, *, compiled: bool) -> RatesFunction:
 
 
 def _departure(case: Case) -> float:
-    """Return a time just after the last uplift before the peak [s]: what is before it is at rest."""
+    """Time just after the last uplift before the peak [s]; earlier motion is irrelevant."""
     run = reduced.simulate(case, rtol=TIGHT)
     resting = np.flatnonzero(np.isnan(run.rolling_angle[: int(np.argmax(run.tilt)) + 1]))
     last = int(resting[-1]) if len(resting) else 0
@@ -303,7 +303,7 @@ def _by_scipy(
 
 
 def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
-    """Return the answer to a problem by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
+    """Answer of a `SOLVERS` solver to a problem; nothing if it gave up or stepped over a pass."""
     integrate = partial(solve_ivp, rates.function, method=name, rtol=rtol, atol=rtol * TOLERANCE_SCALE)
     step, reference = problem.sample_step, problem.references[RECESS].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)

@@ -1,4 +1,4 @@
-"""Errors and computing times of all methods on all problems, in turn: in this process, one after another."""
+"""Errors and computing times of all methods on all problems, measured in this process in turns."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Tradeoff(Results, kind="tradeoff"):
     """
 
     def headline(self) -> dict[str, float]:
-        """Return the cost of engines over that of the recess model."""
+        """Cost of engines over that of the recess model."""
         low, high = engine_factors(self.points)
         return {"engine over recess model, least": low, "engine over recess model, largest": high}
 
@@ -98,7 +98,7 @@ def _description(problem: Problem) -> pd.DataFrame:
 
 
 def _visits(problem: Problem) -> list[Case]:
-    """The case of each round."""
+    """Case of each measuring round."""
     return list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
 
 
@@ -133,7 +133,7 @@ def _points(problem: Problem, methods: list[Method]) -> pd.DataFrame:
 
 
 def _warm_up(methods: list[Method], case: Case) -> None:
-    """Compile, import and load everything by a run of the first, coarsest point of each series."""
+    """Compile, import and load everything with the first, coarsest point of each series."""
     for place, method in enumerate(methods):
         if not place or method.line != methods[place - 1].line:
             method.solve(case)
@@ -160,7 +160,7 @@ def _load() -> float:
 
 
 def reaches(line: pd.DataFrame, target: float) -> pd.DataFrame:
-    """Return the points of a series below an error bound that also hold at the next finer setting.
+    """Points of a series below an error bound that holds at the next finer setting too.
 
     An error that happens to be small at one value does not count, but at the finest, which none follows.
     """
@@ -170,7 +170,7 @@ def reaches(line: pd.DataFrame, target: float) -> pd.DataFrame:
 
 
 def costs(points: pd.DataFrame) -> pd.DataFrame:
-    """Return the cheapest point of each family for each problem, support and error asked for.
+    """Cheapest point of each family for each problem, support and asked error.
 
     Returns
     -------
@@ -188,7 +188,7 @@ def costs(points: pd.DataFrame) -> pd.DataFrame:
 
 
 def plateaus(points: pd.DataFrame) -> pd.DataFrame:
-    """Return the course of the error of each line of an engine with its step; lines of three points or more.
+    """Error over step of each engine line; lines of at least three points.
 
     Returns
     -------
@@ -225,7 +225,7 @@ def plateaus(points: pd.DataFrame) -> pd.DataFrame:
 
 
 def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
-    """Return the savings and the cost of the rest rule: problem, line, value, speed_up, error, error_without.
+    """Savings and the cost of the rest rule: problem, line, value, speed_up, error, error_without.
 
     Each line is compared with the one with next to no rule at the same tolerance.
     """
@@ -241,7 +241,7 @@ def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
 
 
 def engine_factors(points: pd.DataFrame) -> tuple[float, float]:
-    """Return the least and the largest cost of an engine in a recess at an error asked for; NaN of none.
+    """Least and largest cost of an engine in a recess at a given error; NaN if never reached.
 
     In computing times of the recess model at its default tolerance, as everywhere.
     """

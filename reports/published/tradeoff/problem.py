@@ -1,4 +1,4 @@
-"""The problems on which methods are compared, and what an error is in each.
+"""Problems of the trade-off, each with its error measure.
 
 One cylinder in all of them, R = 6 m and tan(alpha) = 0.2, so that computing times may be compared:
 
@@ -75,7 +75,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Problem:
-    """Cases, what is asked of a run of each, and the answers.
+    """Cases of a problem, the quantity asked for, and reference answers.
 
     Attributes
     ----------
@@ -104,21 +104,21 @@ class Problem:
     references: Mapping[str, Reference]
 
     def error(self, support: str, quantities: Sequence[Array]) -> float:
-        """Return the error of an answer; NaN without one for each case."""
+        """Error of an answer; NaN if any case has none."""
         if any(value.size == 0 or not np.isfinite(value).all() for value in quantities):
             return math.nan
         return self.distance(quantities, self.references[support].quantities)
 
 
 def problems(*, quick: bool = False) -> Iterator[Problem]:
-    """Yield the three problems; `quick` has fewer steps and fewer members of the ensemble."""
+    """Yield the three problems; `quick`: fewer steps and ensemble members."""
     yield turn(quick=quick)
     yield shaken(quick=quick)
     yield peaks(quick=quick)
 
 
 def turn(*, quick: bool = False) -> Problem:
-    """Return the problem of the angle of turn, whose answer in a recess is exact, by quadrature."""
+    """Problem of the angle of turn, whose answer in a recess is exact, by quadrature."""
     release = InitialState(0.5 * PIER.alpha, rolling_rate=0.1)
     exact = math.degrees(reduced.angle_of_turn(PIER, release))
     case = Case(PIER, initial=release, duration=_TURN_LENGTH, name="release at alpha/2")
@@ -129,7 +129,7 @@ def turn(*, quick: bool = False) -> Problem:
 
 
 def shaken(*, quick: bool = False) -> Problem:
-    """Return the problem of the tilt under El Centro."""
+    """Problem of the tilt under El Centro."""
     motion = el_centro_1940().scaled(_FACTOR)
     uplift = reduced.simulate(Case(PIER, motion), rtol=TIGHT).uplift_time
     end = _SAMPLE * round((uplift + _AFTER_UPLIFT) / _SAMPLE)
@@ -146,7 +146,7 @@ def _single(
     *,
     quick: bool,
 ) -> Problem:
-    """Return the problem of one case, with what is known of its answers."""
+    """Problem of one case, with its known answers."""
     return _with_answers(
         Problem(
             name=name,
@@ -162,7 +162,7 @@ def _single(
 
 
 def peaks(*, quick: bool = False) -> Problem:
-    """Return the problem of the peak tilts of many motions."""
+    """Problem of the peak tilts under many motions."""
     standing = Case(PIER, synthetic_motions(2, peak=1.0, seed=0)[0], name="synthetic")
     motions = synthetic_motions(4 if quick else 12, peak=_MEMBER_PEAK, seed=1940, duration=_MEMBER_LENGTH)
     steps = _STEPS[:2] if quick else _STEPS[:4]
@@ -181,7 +181,7 @@ def peaks(*, quick: bool = False) -> Problem:
 
 
 def sampling_distance(problem: Problem, support: str) -> float:
-    """Return the distance of two ensembles as large as this one by chance: median of a bootstrap [alpha].
+    """Chance distance of two ensembles of this size: bootstrap median [alpha].
 
     No method needs to be better than that, because another earthquake changes more.
     """
@@ -192,7 +192,7 @@ def sampling_distance(problem: Problem, support: str) -> float:
 
 
 def _with_answers(problem: Problem) -> Problem:
-    """Fill in the answers that have to be computed, and how far they have converged."""
+    """Add the computed reference answers, with their convergence."""
     references = dict(problem.references)
     for name in SUPPORTS:
         runs = _reference_runs(name, min(problem.few_steps))
@@ -204,7 +204,7 @@ def _with_answers(problem: Problem) -> Problem:
 
 
 def _reference_runs(support: str, finest: float) -> list[Run]:
-    """The run whose answer is the reference of a support, and one less tight; none where none can be made."""
+    """Reference run of a support, and a less accurate one; none if impossible."""
     if support in reduced.SUPPORTS:
         tolerances = (TIGHT, 10.0 * TIGHT)
         return [Run(None, support, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in tolerances]
@@ -213,7 +213,7 @@ def _reference_runs(support: str, finest: float) -> list[Run]:
 
 
 def simulate(problem: Problem, case: Case, run: Run) -> Trace:
-    """Return a run of a case, with the samples that the problem asks for."""
+    """Run of a case, sampled as the problem needs."""
     return rw.simulate(
         case,
         support=run.support,
@@ -242,7 +242,7 @@ def _whole_tilt(trace: Trace) -> Array:
 
 
 def _peak(trace: Trace) -> Array:
-    """Peak tilt [alpha], at most that of balance, beyond which it overturns sooner or later."""
+    """Peak tilt [alpha], limited to the balance tilt, beyond which it overturns."""
     return np.array([min(trace.peak_tilt / trace.case.cylinder.alpha, 1.0)])
 
 

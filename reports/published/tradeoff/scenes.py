@@ -27,7 +27,7 @@ _PUSH = 0.1  # [m/s^2] of each component that a scene has; far from uplift
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
-    """A scene, and the one feature that distinguishes it from the others in the table.
+    """Scene that differs from the plain one by a single feature.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Variant:
 
 
 def variants(engine: str) -> list[Variant]:
-    """Return the scenes of an engine: each support plain, and then with one thing changed at a time."""
+    """Scenes of an engine: each support plain, and with single changes."""
     backend = multibody.find_engine(engine)
     facts, supports = backend.facts, backend.supports
     # what changes is the main support of an engine: the ideal recess, where it has one
@@ -82,7 +82,7 @@ def variants(engine: str) -> list[Variant]:
 
 
 def scene_costs(*, rounds: int, steps: int) -> pd.DataFrame:
-    """Return the cost of a step in every scene, measured in so many rounds of so many steps.
+    """Cost of a step in every scene, over rounds of steps.
 
     Returns
     -------
@@ -106,7 +106,7 @@ def scene_costs(*, rounds: int, steps: int) -> pd.DataFrame:
 
 
 def step_cost(engine: str, variant: Variant, steps: int) -> tuple[float, dict[str, int]]:
-    """Return the mean processor time of one step [s], and the size of the problem that it solves."""
+    """Mean processor time of one step [s], and the size of its problem."""
     initial = None if variant.standing else InitialState(0.5 * PIER.alpha, rolling_rate=0.5)
     motion = None
     if variant.components:

@@ -1,4 +1,4 @@
-"""Figures of one engine as it is installed: what make.py beside it runs in a process of its own."""
+"""Accuracy figures of one installed engine, measured in a separate process for make.py."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _EXACT = 1e-11  # tolerance of the models
 
 
 def measure(engine: str, *, sweep: bool = True) -> dict[str, Any]:
-    """Return the figures by name; what the engine cannot run is its reason.
+    """Accuracy figures by name; for failures the reason.
 
     The uplift sweep, which takes most of the time, may be left out.
     """
@@ -45,7 +45,7 @@ def measure(engine: str, *, sweep: bool = True) -> dict[str, Any]:
 
 
 def _turn(engine: str) -> float:
-    """Angle of turn less that of the flat-ground model [deg]."""
+    """Angle of turn minus that of the flat-ground model [deg]."""
     case = Case(CAN, initial=CAN_RELEASE, duration=CAN_LENGTH)
     run = _finished(multibody.simulate(case, engine=engine, support="flat", time_step=CAN_STEP))
     exact = reduced.simulate(case, support="flat", rtol=_EXACT)
@@ -54,7 +54,7 @@ def _turn(engine: str) -> float:
 
 
 def _uplift(engine: str) -> str:
-    """Say whether the sweep of static loads holds, else where it first does not."""
+    """Result of the static load sweep: "holds", or the first failure."""
     if not find_engine(engine).uplifts:
         return "no uplift"
     results = [*GROUPS["rest"][-1].run(subject_of(engine))]
@@ -91,7 +91,7 @@ def _finished(run: Trace) -> Trace:
 
 
 def printed(arguments: Sequence[str]) -> int:
-    """Print the figures of the engine that is named, as JSON in the last line."""
+    """Print the figures of the named engine as JSON in the last line."""
     engine, *rest = arguments
     print(json.dumps(measure(engine, sweep="--no-sweep" not in rest)))
     return 0

@@ -1,4 +1,4 @@
-"""Rolling contact in successive releases of an engine, side by side, each in its own process; see script.py.
+"""Rolling contact in successive releases of an engine, each in its own process; see script.py.
 
 Every version is installed by pip into a folder of its own, without its dependencies, and found there first.
 The figures are angle of turn, the static uplift sweep of the contract, a release, and El Centro. Rows of
@@ -41,12 +41,12 @@ class EngineVersions(Results, kind="engine versions"):
     """Rolling contact in the releases of engines: the table `versions`, a row for each release."""
 
     def headline(self) -> dict[str, int]:
-        """Return the number of releases of each engine."""
+        """Number of releases of each engine."""
         counts = self.versions["engine"].value_counts()
         return {f"releases of {name}": int(count) for name, count in counts.items()}
 
     def sheets(self) -> dict[str, bytes]:
-        """Return the table as CSV."""
+        """Table as CSV."""
         return {"versions.csv": self.versions.to_csv(index=False).encode()}
 
 
@@ -59,7 +59,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def measure(given: argparse.Namespace) -> EngineVersions:
-    """Return the figures of each minor release, and the rows of other engines that are there."""
+    """Figures of each minor release, with stored rows of other engines."""
     with tempfile.TemporaryDirectory() as place:
         folder = given.keep or Path(place)
         rows = [
@@ -71,7 +71,7 @@ def measure(given: argparse.Namespace) -> EngineVersions:
 
 
 def with_earlier(table: pd.DataFrame, folder: Path) -> EngineVersions:
-    """Return a table beside the rows of other engines in a folder, which say when they were measured."""
+    """Table with the stored rows of other engines, which have their dates."""
     earlier: dict[str, dict[str, str]] = {}
     before = EngineVersions.load(folder) if (folder / "manifest.json").exists() else None
     if before is not None and before.manifest is not None:
@@ -84,7 +84,7 @@ def with_earlier(table: pd.DataFrame, folder: Path) -> EngineVersions:
 
 
 def listed(engine: str) -> list[str]:
-    """Return the versions of an engine that pip can install here, the newest first."""
+    """Versions of an engine available to pip here, newest first."""
     package = PACKAGES[engine]
     command = [sys.executable, "-m", "pip", "index", "versions", package, "--only-binary", ":all:"]
     shown = subprocess.run(command, capture_output=True, text=True, check=True).stdout
@@ -93,7 +93,7 @@ def listed(engine: str) -> list[str]:
 
 
 def minor_releases(versions: Sequence[str], since: tuple[int, int], step: int = 1) -> list[str]:
-    """Return the last patch of each minor release, the oldest first; every `step`th back from the newest.
+    """Last patch of each minor release, oldest first; every `step`th counted from the newest.
 
     Examples
     --------
@@ -151,13 +151,13 @@ def _row(engine: str, version: str, folder: Path, *, sweep: bool) -> dict[str, A
 
 
 def table_of(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
-    """Return the table of the rows."""
+    """Table of the rows."""
     numbers = dict.fromkeys(("turn", "release", "el_centro", "seconds"), float)
     return pd.DataFrame(rows, columns=list(COLUMNS)).astype({**numbers, "uplift": str, "remark": str})
 
 
 def page_of(results: EngineVersions) -> Page:
-    """Return the page of the table."""
+    """Page of the table."""
     rows: list[dict[str, Any]] = [
         {**{str(name): value for name, value in row.items()}, "title": TITLES[row["engine"]]}
         for row in results.versions.to_dict("records")
@@ -172,7 +172,7 @@ def page_of(results: EngineVersions) -> Page:
 
 
 def _answer(moved: Sequence[Mapping[str, Any]]) -> str:
-    """Which releases have moved the error, or that none has."""
+    """Releases between which the error changed, or that none did."""
     if not moved:
         return "No release has moved the error under El Centro by more than a tenth."
     each = [f"{row['engine']} {row['since']} ({row['ratio']:.2g} times)" for row in moved]
@@ -181,7 +181,7 @@ def _answer(moved: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _earlier(origins: Mapping[str, Mapping[str, str]]) -> str:
-    """Versions that made the rows of earlier runs; empty without such rows."""
+    """Versions of the earlier runs whose rows are kept; empty without such rows."""
     each = [
         f"{TITLES[name]} ({made['date']}, commit {made['commit'][:12]})" for name, made in origins.items()
     ]
@@ -189,7 +189,7 @@ def _earlier(origins: Mapping[str, Mapping[str, str]]) -> str:
 
 
 def _changes(table: pd.DataFrame) -> list[dict[str, Any]]:
-    """Say between which releases the error of El Centro has changed by more than a tenth."""
+    """Releases between which the El Centro error changed by more than a tenth."""
     entries: list[dict[str, Any]] = []
     for engine, own in table.groupby("engine", sort=False):
         known = own[own["el_centro"].notna()]
