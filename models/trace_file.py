@@ -117,6 +117,13 @@ class EagerSource(CompactRepr):
         return self.held
 
 
+def pass_table(columns: Mapping[str, Array], resolved: NDArray[np.bool_]) -> pd.DataFrame:
+    """Table of passes from its columns (p,)."""
+    import pandas as pd
+
+    return pd.DataFrame({**columns, "resolved": resolved})
+
+
 def no_passes() -> pd.DataFrame:
     """Return an empty table of passes."""
     import pandas as pd

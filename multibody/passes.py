@@ -7,15 +7,10 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .scene import Array
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 # Steps in the time that the minimum tilt of a pass takes at the largest rate: of 200 small motions those with
 # fewer were off by 2e-3 to 2 of their peak, those with 2.5 to 10 by 5e-2 at most
@@ -69,7 +64,7 @@ def filter_noise_swings(points: list[TurningPoint], threshold: float) -> list[Tu
 
 def passes_between(
     points: list[TurningPoint], threshold: float, rests: Sequence[tuple[float, float]] = ()
-) -> pd.DataFrame:
+) -> dict[str, Array]:
     """Passes, tilt minima between two maxima, without swings smaller than `threshold` [rad].
 
     A pass belongs to one motion: both its maxima lie on the same side of every rest, of which `rests` holds
@@ -77,12 +72,10 @@ def passes_between(
 
     Returns
     -------
-    DataFrame
+    dict of ndarray, shape (p,)
         time of the minimum [s], minimum_tilt [rad], and angle_of_turn, the change of the rolling angle from
         maximum to maximum [rad].
     """
-    import pandas as pd
-
     motions: list[list[TurningPoint]] = [[] for _ in range(len(rests) + 1)]
     ends = [end for _, end in rests]
     for point in points:
@@ -96,7 +89,8 @@ def passes_between(
         for before, low, after in zip(kept, kept[1:], kept[2:], strict=False)
         if before.is_maximum and not low.is_maximum
     ]
-    return pd.DataFrame(rows, columns=["time", "minimum_tilt", "angle_of_turn"], dtype=float)
+    columns = np.array(rows, dtype=float).reshape(-1, 3).T
+    return dict(zip(("time", "minimum_tilt", "angle_of_turn"), columns, strict=True))
 
 
 def negligible_uplifts(

@@ -7,7 +7,8 @@ import math
 import time as clock
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from rockwobble.models.mode import SLIDES, expected_mode
 from rockwobble.models.number_checks import require_positive, require_sample_step
 from rockwobble.models.support import RECESS, support_named
 from rockwobble.models.trace import NO_PEAK
-from rockwobble.models.trace_file import EagerSource
+from rockwobble.models.trace_file import EagerSource, pass_table
 
 from .auto_step import AUTO, STEP_TOLERANCE, Progress, find_step
 from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_fault, engine_for
@@ -42,10 +43,6 @@ from .scene import (
     starting_state,
 )
 from .stepping import run_steps
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 STEP_SETTINGS = {"step_tolerance": AUTO, "finest_step": EXTRAPOLATED}  # settings of the choice of a step
 _SWING = 1e-9  # [rad] least difference of two turning points above rounding
@@ -196,7 +193,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         recorder.penetration / (1.5 * scene.body.base_radius),
         STEPS_OF_A_PASS * recorder.fastest * scene.time_step,
     )
-    passes = _passes(recorder, resolution, scale)
+    passes = _passes(recorder, scale)
     sampled = {
         "rolling_rate": np.where(resting, 0.0, table["rolling_rate"] / scale.time),
         "contact_force": forces,
@@ -226,7 +223,8 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         uplift_time=uplift_time * scale.time,
         uplift_direction=uplift_direction,
         source=EagerSource(sampled),
-        passes=passes,
+        # as a table when it is asked for: the process of an engine need not load pandas
+        passes=partial(pass_table, passes, passes["minimum_tilt"] > resolution),
         facts=(
             *diagnostics(recorder, passes, resolution, scale.time),
             *_facts_of_terms(method["case"], recorder, scale),
@@ -285,11 +283,11 @@ def _peak(recorder: Recorder, outcome: str, rows: Array) -> float:
     return max([recorder.peak, float(rows[-1, 1]), *maxima])
 
 
-def _passes(recorder: Recorder, resolution: float, scale: Scale) -> pd.DataFrame:
+def _passes(recorder: Recorder, scale: Scale) -> dict[str, Array]:
     start = recorder.uplift[0] if recorder.uplift is not None else math.inf
     points = [point for point in recorder.points if start <= point.time <= recorder.end]
     passes = passes_between(points, _SWING, recorder.rests.rests())
-    return passes.assign(time=passes["time"] * scale.time, resolved=passes["minimum_tilt"] > resolution)
+    return passes | {"time": passes["time"] * scale.time}
 
 
 def _sample_times(end: float, sample_step: float) -> Array:
@@ -365,7 +363,7 @@ def _statement(
 
 
 def diagnostics(
-    recorder: Recorder, passes: pd.DataFrame, resolution: float, unit_time: float
+    recorder: Recorder, passes: Mapping[str, Array], resolution: float, unit_time: float
 ) -> Iterator[Diagnostic]:
     """Yield the diagnostics of a run, its failure first.
 
@@ -406,7 +404,7 @@ def diagnostics(
         yield Diagnostic(
             code="early_uplift", time=recorder.uplift[0] * unit_time, size=recorder.missing_load, bound=EARLY
         )
-    close = passes[~passes["resolved"]]
+    close = passes["time"][passes["minimum_tilt"] <= resolution]
     if recorder.uplift is not None and not recorder.energy.moves:
         # a base that closed again before it had moved: a pass through upright with no motion after it
         yield Diagnostic(
@@ -416,5 +414,5 @@ def diagnostics(
     # a tilt that only grows has no turning point before the last step
     last = TurningPoint(float(recorder.last_row[0]), recorder.last_value("tilt"), 0.0, is_maximum=True)
     faint = negligible_uplifts([*recorder.points, last], resolution, recorder.rests.rests())
-    if unresolved := sorted([*close["time"], *(unit_time * opened for opened in faint)]):
+    if unresolved := sorted([*close.tolist(), *(unit_time * opened for opened in faint)]):
         yield Diagnostic(code="unresolved_pass", time=unresolved[0], size=len(unresolved), bound=resolution)

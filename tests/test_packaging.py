@@ -124,6 +124,18 @@ def test_importing_loads_no_engine_no_tables_and_no_scipy(load: str) -> None:
     assert run(sys.executable, "-c", script).split() == []
 
 
+def test_a_run_of_an_engine_is_sent_without_pandas() -> None:
+    script = """
+import pickle, sys
+import rockwobble as rw
+pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+case = rw.Case(pier, initial=rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=1.0)
+sent = pickle.dumps(rw.simulate(case, engine="mujoco"))
+print("pandas" in sys.modules, len(pickle.loads(sent).passes), "pandas" in sys.modules)
+"""
+    assert run(sys.executable, "-c", script).split() == ["False", "0", "True"]
+
+
 def test_threads_that_ask_for_the_first_table_at_once_all_get_it() -> None:
     script = """
 from concurrent.futures import ThreadPoolExecutor

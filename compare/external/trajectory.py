@@ -16,6 +16,7 @@ from rockwobble.models.bounds import OVERTURNED_TILT
 from rockwobble.models.frames import pd
 from rockwobble.models.shown import CompactRepr
 from rockwobble.models.support import EXTERNAL
+from rockwobble.models.trace_file import pass_table
 from rockwobble.multibody.passes import TurningPoint, passes_between, turning_points
 
 from ..runs.execution import SAMPLE_STEP
@@ -349,8 +350,8 @@ def _passes(poses: Poses, start: float) -> pd.DataFrame:
     )
     guesses = poses.time[~poses.followed]
     near = 1.5 * float(np.median(np.diff(poses.time)))
-    away = np.abs(found["time"].to_numpy()[:, None] - guesses) >= near
-    return found.assign(resolved=np.asarray(away.all(axis=1)))
+    away = np.abs(found["time"][:, None] - guesses) >= near
+    return pass_table(found, np.asarray(away.all(axis=1)))
 
 
 def _places(

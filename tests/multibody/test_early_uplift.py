@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 import pytest
 from engine_samples import scene_of
 
@@ -51,7 +50,7 @@ def opening(share: float, rise: float) -> list[Diagnostic]:
     parts = (steps.position, steps.quaternion, steps.velocity, steps.angular_velocity)
     recorder.take(Steps(*(each[:end] for each in parts)), acceleration[:end])
     assert recorder.uplift is not None
-    passes = pd.DataFrame({"time": [], "resolved": np.array([], dtype=bool)})
+    passes = {"time": np.empty(0), "minimum_tilt": np.empty(0)}
     return [each for each in diagnostics(recorder, passes, 0.0, 1.0) if each.code == "early_uplift"]
 
 

@@ -57,9 +57,9 @@ def test_a_pass_lies_between_two_maxima_that_are_more_than_rounding() -> None:
         (3.0, 0.11, 3.7, True),
         (4.0, 0.03, 5.0, False),
     )
-    (row,) = passes_between(points, 1e-9).itertuples()
-    assert (row.time, row.minimum_tilt) == (2.2, 0.02 - 1e-12)
-    assert row.angle_of_turn == pytest.approx(3.0)
+    ((time, tilt, turn),) = zip(*passes_between(points, 1e-9).values(), strict=True)
+    assert (time, tilt) == (2.2, 0.02 - 1e-12)
+    assert turn == pytest.approx(3.0)
 
 
 @pytest.mark.parametrize("chunks", [[], [1], [150, 1, 60], [7] * 60])
@@ -103,13 +103,12 @@ def test_a_pass_belongs_to_one_motion() -> None:
         (7.0, 0.01, 7.0, False),
         (8.0, 0.04, 8.5, True),
     )
-    joined = [(row.time, row.angle_of_turn) for row in passes_between(points, 1e-9).itertuples()]
-    assert 4.7 in [time for time, _ in joined]
+    assert 4.7 in passes_between(points, 1e-9)["time"]
     diverged = passes_between(points, 1e-9, [(4.0, 5.0)])
-    assert diverged.time.tolist() == [2.0, 7.0]
-    assert diverged.angle_of_turn.tolist() == pytest.approx([3.3, 3.5])
+    assert diverged["time"].tolist() == [2.0, 7.0]
+    assert diverged["angle_of_turn"].tolist() == pytest.approx([3.3, 3.5])
     # a rest before, between or after that separates nothing
-    assert len(passes_between(points[:3], 1e-9, [(0.0, 0.5), (9.0, 9.5)])) == 1
+    assert len(passes_between(points[:3], 1e-9, [(0.0, 0.5), (9.0, 9.5)])["time"]) == 1
 
 
 def test_a_negligible_opening_precedes_a_motion() -> None:
