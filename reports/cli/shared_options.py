@@ -211,8 +211,7 @@ class Hazard(Plan):
         from rockwobble.models.hazard import HAZARD_MEASURES
         from rockwobble.models.number_checks import require_one_of
 
-        alone = ("hazard_measure", "hazard_units", "hazard_years", "hazard_site", "total_dispersion")
-        needs(self, alone, "hazard")
+        needs(self, [each.name for each in fields(self)], "hazard")
         if self.hazard is None:
             return None
         if self.hazard_measure is None:

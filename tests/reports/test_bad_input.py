@@ -109,6 +109,8 @@ BAD = {
         STEEL: "--tendon-force states the tendon of one body, got 100: give",
     },
     "fragility": {
+        "--synthetic 2 --target 1e-4": "--target needs --hazard as well",
+        "--synthetic 2 --risk-limit uplift": "--risk-limit needs --hazard as well",
         "--units g": "--units needs --records as well",
         "--records nowhere": "the table of records nowhere cannot be read",
         "--cylinder pier=6": "--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got 'pier=6'",
