@@ -136,7 +136,7 @@ def _bar() -> Iterator[Callable[[Progress, str], None]]:
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
 
-    # a name may have brackets, which would be markup
+    # brackets in a name would be read as markup
     words = TextColumn("{task.description}", markup=False)
     with Bar(BarColumn(), TimeElapsedColumn(), words, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("", total=None)

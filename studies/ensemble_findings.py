@@ -55,7 +55,7 @@ def ensemble_findings(members: int, methods: pd.DataFrame, contrasts: pd.DataFra
     if main and members < FEWEST:
         yield Finding(key="ensemble.few", values={"count": FEWEST})
     if main:
-        # equivalent pairs first, then the others by their probability
+        # equivalent pairs first, then by p value
         yield from _differences([*main, *rows_of(contrasts.sort_values("ratio_p"))])
         yield from _overturning(contrasts, bool(methods["overturned"].any()))
     for row in methods[methods["failed"] > 0].to_dict("records"):

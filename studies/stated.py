@@ -15,7 +15,7 @@ from rockwobble.models.plain_json import Facts
 
 from .spectrum.parts import uplift_factor
 
-DIFFERS = "differs"  # a condition that cases have several of
+DIFFERS = "differs"  # value of a condition that differs between cases
 _GRAVITY = 9.81  # [m/s^2], of which a page says nothing
 _MOST_SHOWN = 12  # sources of records
 

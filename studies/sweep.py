@@ -36,7 +36,7 @@ from .study import Study
 
 # An engine's run takes seconds, a reduced one milliseconds.
 _REDUCED_CHUNK_SIZE, _ENGINE_CHUNK_SIZE = 200, 1
-# not the computing time: the table of two sweeps of the same runs is the same
+# without the computing time: sweeps of equal runs have equal tables
 _RESULTS = (
     *("peak_tilt", "uplift_time", "uplift_direction"),
     *("contact_resolution", "residual_displacement", "residual_twist"),

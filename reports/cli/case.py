@@ -87,7 +87,7 @@ class Trajectories(Plan):
             "noise": None if noise is None else math.radians(noise),
         }
         trajectories = [rw.External(path=path, **stated) for path in self.trajectory or ()]
-        for each in trajectories:  # whatever is wrong with a file is said before anything runs
+        for each in trajectories:  # errors in trajectory files are reported before anything runs
             rc.read_trajectory(each, cases[0])
         return trajectories
 

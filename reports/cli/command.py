@@ -145,7 +145,7 @@ def _annotation(kind: Any, stated: Option) -> Any:
     """Annotation of an option, with the metadata for typer."""
     names = (stated.flag,) if stated.flag else ()
     more: dict[str, Any] = {"help": stated.help, "rich_help_panel": stated.group}
-    if stated.form:  # typer knows no type for that
+    if stated.form:  # typer has no such type
         read, metavar = _FORMS[stated.form]
         return Annotated[Any, typer.Option(*names, parser=read, metavar=metavar, **more)]
     if kind == Sequence[str] | None:

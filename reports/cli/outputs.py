@@ -80,7 +80,7 @@ def _content(value: Any) -> object:
     if not isinstance(value, Path):
         return value
     if value.is_dir():
-        manifest = value / "manifest.json"  # it has the hashes of the others
+        manifest = value / "manifest.json"  # its manifest has the hashes of the other files
         files = [manifest] if manifest.is_file() else sorted(each for each in value.rglob("*"))
         return [(str(each.relative_to(value)), _digest(each)) for each in files if each.is_file()]
     return _digest(value) if value.is_file() else str(value)

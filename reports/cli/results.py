@@ -72,7 +72,7 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     lines |= {
         name.replace("_", " "): _text(value)
         for name, value in made.about.items()
-        if not isinstance(value, Mapping) and name not in ("inputs", "seed")  # which follow
+        if not isinstance(value, Mapping) and name not in ("inputs", "seed")  # facts printed below
     }
     lines |= {
         "made on": f"{made.date}, {made.processor}",
@@ -255,7 +255,7 @@ def view(
     asked = rw.Run(engine or _default_engine(support), support, time_step)
     (run,) = with_settings(case, [asked], settings(setting))
     require_runnable(case, run)
-    require_motion(case.name, [rw.simulate(case)])  # before an engine runs for seconds
+    require_motion(case.name, [rw.simulate(case)])  # checked before an engine runs for seconds
 
     def view_of_case(progress: ProgressCallback) -> View:
         shown = View.of(rw.comparison(case, runs=[run], progress=progress), case.name)

@@ -237,7 +237,7 @@ def residual_picture(view: CaseView, name: str) -> Picture:
 def _bars(runs: list[str], values: Array, colours: list[str], x: Axis, unit: str) -> Panel:
     places, ticks = names(runs)
     known = np.nan_to_num(values)
-    # room for the numbers beside the bars
+    # space for the numbers beside the bars
     high = 1.45 * (float(known.max(initial=0.0)) or 1.0)
     texts = [f"{value:.3g} {unit}".replace("nan", "–") for value in values]
     bars = Bars(places=places, start=0.0 * known, end=known, colours=colours, texts=texts)

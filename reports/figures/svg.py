@@ -193,7 +193,7 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
             _heat(axes, layer, panel, picture.shades)
     if picture.columns > 2 and not panel.x.log and not panel.x.ticks:
         axes.locator_params(axis="x", nbins=5)  # more numbers would touch in a narrow panel
-    # after what is drawn, which would move them
+    # last, as other artists would move them
     axes.set_xlim(panel.x.low, panel.x.high)
     axes.set_ylim(panel.y.low, panel.y.high)
     for given, axis in ((panel.x, axes.xaxis), (panel.y, axes.yaxis)):

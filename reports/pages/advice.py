@@ -26,7 +26,7 @@ from .table import number, scattered
 from .wording import lines_of, sentence, statement
 
 _MARKS = dict(zip(GRADES, "✓?!✗", strict=True))
-# lines to sign on a printed page
+# signature lines of a printed page
 _SIGNED = '<p class="signed">Project: <span></span> Checked by: <span></span> Date: <span></span></p>'
 # rows of the box of demands, in order; of the moment of a recess also the force on a wall
 _DEMANDS = (
@@ -38,7 +38,7 @@ _UNITS = {"-": "", "weights": " W", "weights × b": " W b"}
 # what moves at the top, of a frame and of a cylinder; what carries it, a recess and none
 _TOP = {True: "slab", False: "top"}
 _BELOW = {True: "recess", False: "ground"}
-# motions that are told among what was asked, not before all else
+# conditions stated with the input and not as warnings
 _PLAIN = ("mode.rest", "mode.rocks", "mode.rocks_in_one_plane", "mode.no_friction_given")
 _OPENING = ("mode", "vertical", "rest", "steel")
 # options of an advice that other commands do not have

@@ -152,7 +152,7 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
     yield turn_picture(view, f"turns-{place}", notes=not many)
     if view.budgets:
         yield from filter(None, [budget_picture(view, f"shares-{place}")])
-        # where there is nothing to explain they are a megabyte for nothing
+        # omitted without differences, as they take a megabyte
         yield from filter(
             None, [parts_picture(view, f"parts-{place}", above=WORTH_EXPLAINING if many else 0.0)]
         )

@@ -13,7 +13,7 @@ from .page import Page
 from .wording import sentence, statement
 
 _DOUBT = "run.not_reproducible"
-_DETAILS = ("quantity.closest", "quantity.computing_time")  # which a terminal leaves to the page
+_DETAILS = ("quantity.closest", "quantity.computing_time")  # quantities left to the page by a terminal
 
 
 def page_of(run: SingleRun) -> Page:

@@ -62,7 +62,7 @@ def scattered(scatter: float, most: int = 4) -> str:
     >>> [number(0.24303, scattered(scatter)) for scatter in (0.6, 0.03, 1e-3, float("nan"))]
     ['0.24', '0.243', '0.243', '0.243']
     """
-    if not scatter > 0.0:  # nobody knows, or there is none
+    if not scatter > 0.0:  # unknown or zero scatter
         return f".{most}g"
     return f".{min(max(1 + math.ceil(-math.log10(scatter)), 2), most)}g"
 

@@ -91,7 +91,7 @@ def check_comparison() -> None:
         for support, model in models.items()
     ]
     said = re.findall(r"(\d+\.\d) s", headline("compare/report.md"))
-    # ends less than 0.1 s apart are said once
+    # agreement times closer than 0.1 s are stated once
     ends = [[own.min(), own.max()] if np.ptp(own) > 0.1 else [own.min()] for own in ends_of]
     assert said == [f"{each:.1f}" for own in ends for each in own]
 

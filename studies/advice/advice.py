@@ -213,7 +213,7 @@ class Advice(Results, kind=KIND):
         known = motion is not None and friction is not None and self.response["outcome"] not in NO_PEAK
         if self.moves or self.slides or not known:
             return False
-        # an earlier version stated none
+        # results of earlier versions have no such facts
         return bool(friction < motion.get("friction_at_rest", 0.0))
 
     @property
@@ -412,19 +412,19 @@ def advise(
     groups: dict[str, list[Case]] = {}
     tables: dict[str, pd.DataFrame] = {}
     with stage(f"{plan.copies} perturbed copies"):
-        if moves:  # run in this process: others take longer to begin than hundreds of reduced runs
+        if moves:  # this process: starting another one takes longer than hundreds of reduced runs
             groups[COPIES] = plan.perturbed(case)
             perturbed = [simulate_run(each, model, sample_step=DEMAND_STEP) for each in groups[COPIES]]
-            # the other model has no anchor; and where the base never opens, chatter takes it minutes
+            # flat ground is left out: it has no anchor, and chatter of a closed base takes it minutes
             stays = case.is_release or case.friction >= case.friction_of_uplift  # on flat ground, too
             if stays and not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
-                few = groups[COPIES][:WEAKER_COUNT]  # few suffice for a ratio that no grade rests on
+                few = groups[COPIES][:WEAKER_COUNT]  # few copies suffice for a ratio without part in grades
                 others = [simulate_run(each, other, sample_step=BAND_STEP) for each in few]
         rows = [*member_rows(COPIES, perturbed), *member_rows(OTHER, others)]
     with stage("other records as strong, planar analysis and the vertical component"):
         records, source = ({}, "") if trace.outcome in NO_PEAK else other_records(case)
         slides = trace.mode == SLIDES
-        if slides:  # nothing of it uplifts
+        if slides:  # sliding bodies never uplift
             tables["slides"] = slide_rows({COPIES: plan.perturbed(case), **records}, model)
             records = {}
         groups |= records

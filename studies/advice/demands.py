@@ -41,7 +41,7 @@ LEVEL_RATIO = 2.0**0.25
 # [alpha] tilt that a run asks of a wall at least if it passes the balance, whether it overturns or comes back
 PASSED = 1.25
 ROUNDING = 1e-12  # relative, of sums and ratios of what acts together
-_FIRST_LEVEL = -4  # steps from the threshold of uplift
+_FIRST_LEVEL = -4  # first level, in steps from the uplift threshold
 
 _BASE = {"friction": "-", "shear": "weights", "force": "weights"}
 _TOP = {f"top_{name}": unit for name, unit in _BASE.items()}
@@ -54,7 +54,7 @@ UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS, _TENDON: "weights"}
 SHARES = ("slip", "lost")
 # columns with the largest of all samples as well
 PEAKS = {name: f"{name}_peak" for name in ("shear", "force")}
-# demands of which is said what acts together with them, and what that is
+# demands stated with their simultaneous actions, and these actions
 _LEADING = ("shear", "moment")
 _TOGETHER = ("shear", "force", "moment")
 _PAIRS = tuple(itertools.product(_LEADING, _TOGETHER))
@@ -280,7 +280,7 @@ def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[s
     best: dict[str, Any] = {"value": math.nan, "reason": f"fewer than {FEWEST} runs differ"}
     for group, factor, runs in groups:
         value, covered = covering(runs[name].to_numpy(float), COVERED)
-        if value <= best["value"]:  # not where the best is none yet, NaN
+        if value <= best["value"]:  # false while the best is NaN, too
             continue
         best = {
             **{"value": value, "group": group, "factor": factor, "runs": len(runs), "covered": covered},

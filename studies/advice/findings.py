@@ -35,7 +35,7 @@ from .slides import engine_finding, slide_findings
 Advice = Any  # class of `.advice`, which imports this module
 # times a ground motion: what has to be made stronger than that uplifts nothing, such as still ground
 _NO_SCALE = 1e9
-_NOTHING = 1e-3  # share of a demand below which what acts beside another is none
+_NOTHING = 1e-3  # share of a demand below which a simultaneous action is omitted
 _ACTING = ("shear", "force", "moment")
 # columns of a frame: what lies on more than three ends rests on those that happen to be higher
 _EVENLY_LOADED = 3
@@ -151,10 +151,10 @@ def _limit_of_tendon(advice: Advice) -> Iterator[Finding]:
 
 def _groups(advice: Advice) -> Iterator[Finding]:
     """Each group of runs; groups other than copies with their comparison."""
-    # an earlier version counted none that yields
+    # results of earlier versions have no count of yielding runs
     rows = {str(row["group"]): {"yielded": 0} | row for row in advice.groups.to_dict("records")}
     for group, row in rows.items():
-        yielded = int(row.get("yielded", 0))  # an earlier version counted none
+        yielded = int(row.get("yielded", 0))  # missing in results of earlier versions
         values: dict[str, Value] = {
             "name": group_name(advice, group),
             "runs": int(row["runs"] - row["failed"]),
@@ -177,7 +177,7 @@ def _groups(advice: Advice) -> Iterator[Finding]:
     one, records = rows[others[0]], str(advice.facts["records"])
     plane = "one_component" if advice.response["in_one_plane"] else None
     compared: dict[str, Value] = {"count": int(one["runs"]), "name": records, "reason": plane}
-    if not advice.moves:  # no table says what they do to what stays at rest as given
+    if not advice.moves:  # other records have no table for a case at rest
         moving = advice.members[advice.members["peak_tilt"] > 0.0]["group"]
         for group in others:
             compared[f"runs_{group}"] = int((moving == group).sum())
@@ -214,7 +214,7 @@ def _demands(advice: Advice) -> Iterator[Finding]:
         if name == "force" or math.isnan(row["with_force"]):
             continue
         acting = {part: row[f"with_{part}"] for part in given}
-        said = f"{acting[name]:.3g}" == f"{row['value']:.3g}"  # as the demand
+        said = f"{acting[name]:.3g}" == f"{row['value']:.3g}"  # equal to the demand in print
         yield Finding(
             key=f"together.{name}",
             values={

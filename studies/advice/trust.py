@@ -166,7 +166,7 @@ def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
         case,
         reference=trace,
         own=trace,
-        # scale of the fastest fall; the penetration counts for less than it
+        # time scale of the fastest fall, long compared with that of penetration
         contact_resolution=STEPS_OF_A_PASS * float(np.abs(trace.tilt_rate).max()) * step,
         error=estimated_error(case, run or Run(DEFAULT_ENGINE, trace.run.support), step),
         simulate=simulate_run,
@@ -220,7 +220,7 @@ def verify_run(case: Case, run: Run, reference: Trace) -> tuple[Verification, Pr
         **{name: row[name] for name in ("time_step", "outcome", "diagnostics", "peak_tilt", "divergence")},
     )
     until, reason = float(row["predicted_until"]), row["predicted_by"]
-    if not math.isfinite(until):  # a run that was lost left none
+    if not math.isfinite(until):  # failed runs have no agreement time
         return verification, Prediction(length=case.length, reason=""), trace
     start = row["reference_uplift_time"] if reason else 0.0
     return verification, Prediction(length=until - start, reason=reason), trace

@@ -29,9 +29,9 @@ EXTRAPOLATED, ONE_MOTION = "extrapolated", "one motion"
 KINDS = (FITTED, NEVER, ALWAYS, SEPARATED, FALLING, EXTRAPOLATED, ONE_MOTION)
 TOO_FEW = "too few"  # motions or levels: whatever the curve, it is not stated
 _ITERATIONS, _HALVINGS = 60, 30
-# largest last step of Newton's method, in standard deviations of the logarithm of the intensity
+# convergence limit of Newton's method, in standard deviations of the log intensity
 _TOLERANCE = 1e-11
-_LEVEL = 1e-9  # slope, in the same, of a share that is the same at all intensities
+_LEVEL = 1e-9  # slope below which a share counts as constant
 _GROUPS = 10  # groups of a cloud, to compare shares with the curve
 
 
@@ -327,7 +327,7 @@ def interval(value: float, drawn: Array, motions: int, *, above: Array | None = 
     anything: it counts as minus infinity at the lower end and as infinity at the upper one.
     """
     low, high = expanded_shares(motions)
-    # an infinite end where that is not known; the nearest to the outside: between it and a number is nothing
+    # an infinite end where unknown; interpolation with it gives the outer neighbour
     lower, upper = (
         np.sort(np.where(np.isnan(bounds), unknown, bounds))
         for unknown, bounds in ((-math.inf, drawn), (math.inf, drawn if above is None else above))

@@ -145,7 +145,7 @@ class Resampled:
 
     def over(self, other: Resampled) -> Resampled:
         """Ratio to another frequency from equal resamples."""
-        with np.errstate(invalid="ignore"):  # two zeros have no ratio
+        with np.errstate(invalid="ignore"):  # zero over zero has no ratio
             return replace(self, logs=self.logs - other.logs, parts=self.parts - other.parts)
 
     def interval(self, motions: int) -> Interval:
@@ -176,7 +176,7 @@ def resampled(terms: Array, weights: Array) -> Resampled:
     known = ~np.isnan(terms)
     values = np.where(known, terms, 0.0)
     counts = np.vstack([np.ones((1, len(terms))), weights])
-    with np.errstate(divide="ignore", invalid="ignore"):  # all that were drawn failed, or none exceeds
+    with np.errstate(divide="ignore", invalid="ignore"):  # all drawn motions failed, or none exceeds
         runs = counts @ known
         means = (counts @ values) / runs
         sums = means.sum(axis=1)

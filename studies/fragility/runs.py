@@ -39,7 +39,7 @@ from .tables import CONTACT_LOST, SLIDES, YIELDED
 
 Row = dict[str, float | str]  # row of a run
 Shaken = tuple[Case, Mapping[int, float]]  # case, and the factors on its ground motion by their places
-# The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
+# The worse plane is not simulated: for each motion it is the plane with the larger tilt.
 WORSE_PLANE = "worse-plane"
 _PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}
 MODEL_LABELS: Mapping[str, str] = {
@@ -521,7 +521,7 @@ def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:
         parts[0]
         .assign(
             method=MODEL_LABELS[WORSE_PLANE],
-            peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
+            peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN if a plane failed
             outcome=np.select(ends, _ENDS, parts[0]["outcome"]),
             contact_lost=of["contact_lost"].max(axis=1, skipna=False),
             slides=math.nan,

@@ -31,7 +31,7 @@ _COARSEST = 8.0  # coarsest step in units of the finest, where nothing asks for 
 # side, reaches alpha within so many times its length: next to a window the tilt changes fast.
 _REACH, _BESIDE = 6.0, 2
 _SPARE = 10  # as a tenth more are drawn, one that overturns near the lowest asks for no others
-_CLOSE = 1e-6  # relative: so near to uplift there is nothing to draw between
+_CLOSE = 1e-6  # relative distance to uplift below which no intensity is drawn
 
 
 def lowest_on_grid(intensities: Array, peak_tilts: Array) -> Array:

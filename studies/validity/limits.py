@@ -44,7 +44,7 @@ SMALL = 0.05  # relative difference of peak tilt: less cannot be told from chanc
 CONFIRMS = 0.5
 # and contradicts it where turn or period is off by more than this; the step of an engine errs by less
 _CONTRADICTS = 1e-3
-_ROUNDING = 1e-9  # relative, of a peak that was stored over alpha
+_ROUNDING = 1e-9  # relative rounding of a peak stored over alpha
 
 
 def largest(values: pd.Series[float]) -> float:
@@ -466,7 +466,7 @@ def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
     slips_at, sticks = largest(slip.loc[slipped, "share"]), slip.loc[~slipped, "share"]
     # a base that slips at one release does not stick at all
     values = {"share": slips_at, "bound": least(sticks[~(sticks <= slips_at)])}
-    if not structure.slab_mass_ratio:  # where slip at the base is not all
+    if not structure.slab_mass_ratio:  # only without a slab, as slip at its base is then all slip
         nearest = slip[slip["share"] == slips_at]
         values |= {"ratio": largest(nearest["slip"]), "share_tilt": largest(nearest["tilt_rms"])}
     yield _finding("force.slip", **values)

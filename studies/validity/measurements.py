@@ -116,7 +116,7 @@ def measure_free_response(
 
 
 _VERIFIED_PERIODS = 2.2  # the second maximum, and a little more, so that it is seen to be one
-_FRICTION = 10.0  # whatever the motion needs: friction is another limit
+_FRICTION = 10.0  # ample, as friction is another limit
 
 
 def measure_verification(
@@ -147,7 +147,7 @@ def measure_verification(
         }
 
 
-_SLIP_PERIODS = 1.1  # one pass: the friction of the next is the same
+_SLIP_PERIODS = 1.1  # one pass, as later passes need equal friction
 
 
 def measure_slip(

@@ -172,7 +172,7 @@ def y_up(table: Table) -> Table:
     return table | taken
 
 
-# what is done to a file, and the codes and values that are to be named
+# change of a file, and the expected codes and values
 MISTAKES: dict[str, tuple[Form, Callable[[Table], Table], dict[str, float | None]]] = {
     "degrees": (
         tilt_and_azimuth,

@@ -87,7 +87,7 @@ def rows(path: Path) -> pd.DataFrame:
 def _differences(one: Entry, other: Sample) -> dict[str, float]:
     end = math.inf if one["agreement_time"] is None else one["agreement_time"]
     before = of_allowed = after = tilt_after = 0.0
-    for name, values in one["signals"].items():  # the tilt first
+    for name, values in one["signals"].items():  # the tilt comes first
         count = min(len(values), len(other["signals"][name]))
         wanted, got = (np.array(v[:count], dtype=float) for v in (values, other["signals"][name]))
         apart, early = np.abs(wanted - got), np.array(one["time"][:count]) < end

@@ -224,7 +224,7 @@ def settings_table(engine: str, names: Sequence[str] = ()) -> Iterator[dict[str,
 
 BODIES = ((10.0, 0.1), (6.0, 0.2), (6.0, 0.35), (3.0, 0.5), (3.0, 1.0))  # R [m], tan alpha
 POINTS = (16, 32, 64, 128)
-LENGTH, EARLY = 6.0, 2.0  # [s]
+LENGTH, EARLY = 6.0, 2.0  # run length, and early part after uplift [s]
 
 
 def motions_of(body: Cylinder) -> list[GroundMotion]:

@@ -34,7 +34,7 @@ _STEP = 0.05  # of the period of a column between two springs, over 2 pi
 class Frame:
     """One problem: a frame with its imperfections."""
 
-    columns: int  # 1: under a slab that cannot turn
+    columns: int  # with 1, the slab only translates
     ratio: float = 1.0
     tan_alpha: float = 0.5
     circle: float = 3.0  # radius of that on which the columns stand [b]
@@ -49,7 +49,7 @@ class Frame:
     lean: float = 0.0  # tilt of one column beyond that of the others, a share of it
     offset: float = 0.0  # mass centre of the slab from the middle of the columns [m]
     thickness: float = 1.0  # of the slab, whose mass centre is in the middle [m]
-    inertia: float = 1.0  # of the slab, over that of a homogeneous one
+    inertia: float = 1.0  # slab inertia over that of a homogeneous slab
 
     @property
     def cylinder(self) -> Cylinder:

@@ -38,7 +38,7 @@ TABLE = Path(__file__).parents[2] / "reports" / "published" / "measured" / "rods
 TRACKS_SHA256 = "d0e57469d301c4147035bcec61cd796d3b3a7486a493805b22620705c7682ae5"
 _NAME = re.compile(r"d_(\d+)mm_l_(\d+)mm_(\d+)deg\.txt")
 _LEAST_AMPLITUDE = 60.0  # [px], a tenth of the largest: below it the noise of the track outweighs the loss
-_CENTRAL = 0.35  # of the amplitude: a track that stays further out turned about the centre instead of passing
+_CENTRAL = 0.35  # share of the amplitude: tracks that stay farther out did not pass the centre
 _SMALL, _LARGE = 120.0, 200.0  # amplitudes of the small and the large swings [px]
 _BETWEEN = 2.5  # times its ends that the radius must reach between two minima to be a swing
 # of the samples from a pass to the turning point: which are fitted. The nearest is left out, where the rim

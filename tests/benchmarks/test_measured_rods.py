@@ -11,7 +11,7 @@ import pytest
 from benchmarks.measured_rods import TABLE, TRACKS_SHA256, kept, main, passes_of
 
 KEPT = 0.95
-# of the parabola through a motion that is one, with a noise of 0.3 px: over a hundred passes
+# error of the parabola fit over a hundred passes, with a noise of 0.3 px
 FITTED = 2e-3
 
 

@@ -59,7 +59,7 @@ def test_prism_loss_halves_with_twice_the_corners() -> None:
 
 
 def test_prism_simulation_matches_the_table() -> None:
-    step = 1e-3  # a landing is found up to a step late: 0.3 % of the tilt
+    step = 1e-3  # an impact is detected up to a step late: 0.3 % of the tilt
     measured = worlds.turned(worlds.prism(step, False, 32), step)
     kept = row("prism-32", "default")
     assert measured["tilt"] == pytest.approx(kept.tilt, abs=0.01)

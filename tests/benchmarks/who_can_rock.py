@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _STEP = 1e-4  # [s] of the engines with the settings of rockwobble
 _CAN = Cylinder(semidiagonal=math.hypot(worlds.B, worlds.H), tan_alpha=worlds.B / worlds.H)
 _LONGEST = 1200.0  # [s] of one simulator
-_ROUNDS = 3  # in which the steps of all simulators are timed
+_ROUNDS = 3  # rounds in which every simulator's step is timed
 # formulation and precision
 KNOWN: Mapping[str, tuple[str, str]] = MappingProxyType(
     {

@@ -33,7 +33,7 @@ TURN_ERROR = 0.01  # [deg]
 TILT_ERROR = 1e-4
 # in single precision a pose of 2 m is off by 2e-7 m, which contact takes for a gap
 SINGLE_TURN_ERROR, SINGLE_TILT_ERROR = 0.03, 1e-3
-# in the README: of the worst engine of each precision
+# README: worst engine of each precision
 WORST = {"bullet_can": r"([\d.]+)°", "rapier_can": r"single precision\) ([\d.]+)°"}
 ENGINES = {
     "mujoco_can": "mujoco",

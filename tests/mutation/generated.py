@@ -29,7 +29,7 @@ from pathlib import Path
 PACKAGES = ("models", "reduced", "multibody", "compare", "studies")
 _LEFT_OUT = shutil.ignore_patterns(".git", "__pycache__", ".mypy_cache", ".ruff_cache", "published", "docs")
 _LIMIT = 600.0  # [s] many times what the check takes
-_LONGEST = 900.0  # [s] many times what the fast tests of a module take
+_LONGEST = 900.0  # [s] time limit, many times that of a module's fast tests
 _MOST = 6  # test files that are asked
 _OPERATORS: dict[type[ast.operator], ast.operator] = {
     ast.Add: ast.Sub(),

@@ -134,9 +134,9 @@ def test_printed_numbers_equal_the_group_table(advice):
     for row, group in zip(groups, advice.groups.to_dict("records"), strict=True):
         if np.isfinite(group["peak_tilt_95"]):
             assert float(row["tilt"]) == pytest.approx(alpha * group["peak_tilt_95"], rel=PRINTED)
-        # one statement: how many overturn, and which order statistic the tilt is
+        # overturning count and order statistic of the tilt in one statement
         assert row["overturn"].startswith(f"{group['overturned']} of {group['runs']} (")
-        if row["covered"] == "":  # more than 95 % overturn: no tilt is theirs, and no count stands beside it
+        if row["covered"] == "":  # with over 95 % overturned there is no tilt, and no count beside it
             assert np.isinf(group["peak_tilt_95"])
             continue
         rank, count = map(int, row["covered"].split(" of "))

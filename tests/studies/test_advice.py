@@ -164,7 +164,7 @@ def test_group_table_counts_overturned_members_and_excludes_failed_ones(advice):
     assert (group["runs"], group["failed"], group["overturned"]) == (20, 1, 2)
     assert group["chance"] == 2 / 19
     assert group["chance_low"] < 2 / 19 < group["chance_high"]
-    assert group["peak_tilt_95"] == math.inf  # 2 of 19 are more than 5 %
+    assert group["peak_tilt_95"] == math.inf  # 2 of 19 exceed 5 %
     assert group["covered"] == 19  # ceil(0.95 19)
     stands = members.loc[copies[3:], "peak_tilt"]
     assert stands.min() <= group["peak_tilt_50"] <= stands.max()
@@ -358,7 +358,7 @@ def test_simultaneous_forces_are_within_the_demands(beyond, support):
     demands = demand_table(members, PIER, gravity=9.81, support=support)
     acts_within_its_rows(demands)
     shear = demands.set_index("demand").loc["shear"]
-    assert (shear["value"], shear["covered"]) == (0.119, 19)  # whatever acts with it
+    assert (shear["value"], shear["covered"]) == (0.119, 19)  # independent of simultaneous actions
     held = beyond == (0.119, 1.1, 0.05) and support == "flat"  # where nothing is said of a moment
     expected = beyond if held else (0.117, 1.1, 0.005)
     assert tuple(shear[[f"with_{part}" for part in ("shear", "force", "moment")]]) == expected
@@ -504,7 +504,7 @@ def test_the_vertical_component_is_judged_by_pairs_of_copies():
     shipped, with_it = vertical_effect(Case(PIER, el_centro_1940()), RECESS, plan)
     assert (own.source, shipped.source) == ("own", "shipped")
     assert (list(without), list(with_it)) == (["without vertical"], ["with vertical"])
-    assert own.ratios["ratio"] == pytest.approx(shipped.ratios["ratio"], rel=1e-6)  # the same copies
+    assert own.ratios["ratio"] == pytest.approx(shipped.ratios["ratio"], rel=1e-6)  # equal copies
     other, none = vertical_effect(Case(PIER, PULSE), RECESS, plan)
     assert (other.source, none) == ("other", {})
 
@@ -585,7 +585,7 @@ def test_identical_copies_count_as_one_run(advice):
     assert (row["single"], row["runs"], row["failed"], row["overturned"]) == (True, 20, 0, 0)
     assert np.isnan(row[["chance", "chance_low", "chance_high", "peak_tilt_50"]].to_numpy(float)).all()
     assert not single.copies_differ
-    # all at rest, or all overturned, are runs of their own
+    # groups with all members at rest, or all overturned, are single runs
     members.loc[copies, numbers] = 0.0
     assert not with_table(advice, members=members).groups["single"].any()
     members.loc[copies, "peak_tilt"] = 0.5 * math.pi / PIER.alpha
@@ -640,7 +640,7 @@ def test_overturning_after_the_record_counts_in_every_group(no_records):
     assert ends[0] == pytest.approx(ends[1], rel=SAME_RUN)
     assert cut.facts["length"] == pytest.approx(ends[0], abs=0.011)  # a sample
     assert cut.facts["motion"]["samples"] == 121
-    # every copy lies on its side at the end
+    # every copy has overturned at the end
     assert cut.band["low"].iloc[-1] > 1.0
     assert cut.response["in_one_plane"]
 
@@ -743,7 +743,7 @@ def test_advice_states_uplift_stiffness_and_balance_of_a_tendon(no_records: None
     assert ratio == pytest.approx(1.5, rel=1e-12)
     b, h = pier.base_radius, pier.mass_centre_height
 
-    def couple(tilt: float) -> float:  # over m g
+    def couple(tilt: float) -> float:  # static couple over m g
         pull = tendon.prestress + tendon.stiffness * 2.0 * math.sin(0.5 * tilt)
         return b * math.cos(tilt) - h * math.sin(tilt) + b * pull * math.cos(0.5 * tilt)
 

@@ -168,7 +168,7 @@ def test_narrow_gaps_are_found_at_the_stated_rate(width: float, chance: float):
         assert (missed > 0) == (low < 2.0)
         assert low == 2.0 or abs(low - centre) < 0.5 * width
         hits += low < 2.0
-    # four standard deviations of a share of so many
+    # four standard deviations of a share of that many trials
     assert hits / trials == pytest.approx(
         chance, abs=4.0 * math.sqrt(chance * (1.0 - chance) / trials) + SAME
     )

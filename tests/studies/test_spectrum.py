@@ -181,7 +181,7 @@ def test_a_fall_after_the_record_counts_as_overturned_in_cells():
             cut.overturned(series).tolist() == followed.overturned(series).tolist() == [[False, True, True]]
         )
         assert cut.lowest[series] == pytest.approx(followed.lowest[series], rel=SAME_RUN)
-    # a component that does not move is searched nowhere
+    # no search without a component of motion
     assert math.isnan(cut.lowest[PLANAR_Y][0])
     assert cut.searched_from[PLANAR_Y] > 1e10
 

@@ -481,7 +481,7 @@ def test_bounds_are_rounded_to_the_safe_side() -> None:
     for group in ("requirement", "records", "release", "force", "ring"):
         for line in words()[f"limit_{group}"].values():
             text = line if isinstance(line, str) else line[-1]
-            # a softness may be used up to its bound, which is rounded down
+            # a softness limit is rounded down
             for side, form in re.findall(r"at (most|least) \{\w+:([^}]*)\}(?!/p)", text):
                 assert form.startswith(side), text
                 checked += 1

@@ -40,7 +40,7 @@ LEVELS = ("exact", "good", "pass")
 FEWEST_IN_WINDOW = 30
 FITTED_SAMPLES = 7  # of the polynomial through a maximum of the tilt
 FALLEN = 1.5  # [rad]: what fell ends early
-ENOUGH = 4.0  # a mistake that is named reduces the error so many times
+ENOUGH = 4.0  # least factor by which a named mistake reduces the error
 EXPLAINED_RUNS = 3  # of the worst runs, for whose mistakes all are tried
 # differences that are explained: tilt [alpha] and azimuth [rad]
 EXPLAINED_TILT, EXPLAINED_AZIMUTH = 3e-3, 1e-2
@@ -135,7 +135,7 @@ def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
 def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
     """Quantity of reference.json; NaN where it is not known, inf where it does not happen."""
     name, _, digits = quantity.rpartition("_")
-    if name == "kept":  # of the energy at a closing, between two maxima
+    if name == "kept":  # energy ratio across an impact, from two maxima
         tops = [measured(f"maximum_{int(digits) + k}", motion, run, wanted) for k in (0, 1)]
         if math.inf in tops:
             return math.inf

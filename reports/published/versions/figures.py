@@ -37,7 +37,7 @@ def measure(engine: str, *, sweep: bool = True) -> dict[str, Any]:
     for name, figure in figures:
         try:
             row[name] = figure(engine)
-        # whatever an old version raises is what there is to say of it
+        # an old version may raise any error, which becomes its result
         except Exception as error:
             row[name], line = math.nan, (str(error).splitlines() or [""])[0]
             row.setdefault("remarks", []).append(f"{name}: {type(error).__name__}: {line}")

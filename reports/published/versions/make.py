@@ -144,7 +144,7 @@ def _row(engine: str, version: str, folder: Path, *, sweep: bool) -> dict[str, A
     answer = json.loads(done.stdout.splitlines()[-1])
     if answer.pop("version") != version:
         return row | {"remark": "another version was found in its place"}
-    # most of the time one reason keeps all figures from running
+    # one reason usually prevents all figures
     reasons = dict.fromkeys(remark.partition(": ")[2] for remark in answer.pop("remarks", []))
     row.update(remark="; ".join(reasons), **answer)
     return row
