@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from _pytest._code.code import TerminalRepr, TracebackStyle
 
     from rockwobble.compare.check import Result
-# copy of a constant of models.suites, which would be imported with every run of pytest
+# copy of a constant of models.suites, whose import would slow every pytest run
 ENDING = ".suite.toml"
 _OPTION = "--no-rockwobble-budget"
 _CERTIFICATE = "--rockwobble-certificate"

@@ -181,7 +181,7 @@ def ensemble(
     stated = case_or_members.runs if isinstance(case_or_members, Suite) else ()
     chosen = (stated or default_runs(cases=members)) if runs is None else tuple(runs)
     if models is REDUCED_MODELS and any(case.anchor for case in members):
-        # the base wanders from its anchor on flat ground
+        # no anchor on flat ground, where the base wanders
         models = tuple(model for model in models if model.support.guided)
     for case in members:
         for run in chosen:

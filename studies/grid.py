@@ -69,7 +69,7 @@ class GridChunk:
         axes = self.semidiagonals, self.tan_alpha, self.motion, self.scales
         peaks = reduced.peak_tilts(
             *axes, workers=1, **options
-        ).ravel()  # the processes share the cores already
+        ).ravel()  # processes share the cores already, so one thread each
         sizes, scales = (each.ravel() for each in np.meshgrid(self.semidiagonals, self.scales, indexing="ij"))
         return pd.DataFrame(
             {
@@ -154,7 +154,7 @@ class Grid(CompactRepr, GridPlan):
             raise ValueError(
                 f"a grid has at most {MOST_RUNS:,} runs, got {self.rows:,}: sweep fewer at a time"
             )
-        # looks at the options here, not first in another process
+        # early check of the options, before another process starts
         for model in self.models if self.options else ():
             run = {**reduced.MODELS[model], **self.options}
             reduced.peak_tilts([1.0], 0.2, self.motions[0], [], **run)
@@ -220,7 +220,7 @@ class Grid(CompactRepr, GridPlan):
         }
 
     def _blocks(self, size: int) -> Iterator[tuple[Sequence[float], Sequence[float]]]:
-        # whole rows of scales where they fit, because a row shares what depends on the size alone
+        # complete rows of scales if possible, as a row shares all work that depends on the size
         width = min(size, len(self.scales))
         height = max(1, size // width)
         for i in range(0, len(self.semidiagonals), height):

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _FILE = "run.parquet"
-_WIDE = 0.1  # scatter of the copies from which on a number is about so large
+_WIDE = 0.1  # scatter of the copies above which a number is called approximate
 _PLAN = AdvicePlan(copies=20)  # enough copies to say from when on they diverge
 
 

@@ -205,7 +205,7 @@ def ensemble(
         lines = [f"Suite {suite}: {len(members)} members"]
     else:
         stated, source = _members(context, problem, copies, motions, peak)
-        # the words on one case apply to its copies; of different motions only the first line does
+        # notes on one case apply to its copies; with different motions only the first line does
         members = [] if isinstance(stated, rw.Case) else stated
         lines = case_lines(stated) if isinstance(stated, rw.Case) else case_lines(members[0])[:1]
         lines += [f"Members: {len(members) or copies.copies}, {source}"]
@@ -230,7 +230,7 @@ def _members(
     target = level * case.gravity * case.cylinder.tan_alpha
     if not target > 0.0:
         raise ValueError(f"--peak must be positive [g tan alpha], got {level:g}")
-    # named by the motion alone: the others are all the same
+    # named by the motion only, as all else is equal
     scaled = [motion.scaled(target / motion.peak) for motion in ensemble]
     members = [dataclasses.replace(case, name=motion.name, motion=motion) for motion in scaled]
     return members, f"{source}, with peaks of {level:g} g tan alpha"

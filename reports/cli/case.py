@@ -219,7 +219,7 @@ def simulate(
     case = problem.case()
     if model.plane is not None and problem.release_azimuth_deg:
         raise ValueError("--plane is the azimuth of the lean, got --release-azimuth-deg beside it")
-    if model.plane is not None and case.initial is not None:  # it leans in the plane that holds it
+    if model.plane is not None and case.initial is not None:  # the release lies in the plane of the model
         case = replace(case, initial=replace(case.initial, rolling_angle=model.plane))
     named = None if engine == options.NO_ENGINE else engine
     chosen = _with_settings(case, rw.Run(named, support, time_step), setting, dataclasses.asdict(model))
@@ -297,7 +297,7 @@ def advise(
         results = rw.advise(case, checked, progress=progress, **stated)
         return replace(results, facts={**results.facts, "options": options_given})
 
-    # the advice lists the rest of the input
+    # rest of the input is listed by the advice
     records = record_lines([case.motion]) if problem.names_record else []
     return Work(
         run,

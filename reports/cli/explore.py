@@ -167,7 +167,7 @@ def _state(problem: Problem, records: Path | None, support: str, plane: float | 
         given := first_given(problem, "record", "record_x") or ("--records" if records else "")
     ):
         raise ValueError(f"--release-tilt-deg takes the place of a record here, got {given} beside it")
-    # refuse here, too, what the models refuse
+    # early refusal of what the models refuse
     rw.Case(
         cylinder,
         initial=initial or rw.InitialState(tilt=0.5 * cylinder.alpha),

@@ -144,7 +144,7 @@ RESAMPLE = (
     "Resample components to a common time step by linear interpolation (all original samples are kept)."
 )
 SUITES = "a TOML file, or a shipped one (canon, p695, quick)"
-ALL, NO_ENGINE = "all", "none"  # used in place of names of engines
+ALL, NO_ENGINE = "all", "none"  # accepted in place of engine names
 
 
 def _standing_alone(names: list[str] | None) -> list[str] | None:

@@ -11,7 +11,7 @@ from ..console import command_line
 if TYPE_CHECKING:
     import typer
 
-# options that change no number of the results
+# options without effect on the results
 _NOT_OF_PLAN = {"out", "overwrite", "workers", "scheduler", "chunk", "details", "opened"}
 _NOT_OF_PLAN |= {"json", "junit", "markdown", "place"}
 

@@ -118,7 +118,7 @@ class OutputOptions(Plan):
         for option, path in (("--json", self.json), ("--junit", self.junit)):
             if path is not None:
                 require_own_file(context, option, path)
-        if self.markdown is not None:  # file to which a page is added
+        if self.markdown is not None:  # file to which the page is appended
             require_file("--markdown", self.markdown)
 
     def write(self, results: Checks, plan: str) -> None:
@@ -141,7 +141,7 @@ class OutputOptions(Plan):
             if path is not None:
                 replace_files(path.parent, {path.name: text_of(results, plan).encode()})
         if self.markdown is not None:
-            try:  # the summary of a CI job may hold pages of other steps
+            try:  # appended, as the summary of a CI job may hold pages of other steps
                 with self.markdown.open("a", encoding="utf-8") as file:
                     file.write(page_of(results.made_by(command_line())).markdown())
             except OSError as error:

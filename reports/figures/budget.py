@@ -14,16 +14,16 @@ from .palette import Style, pale
 from .picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text, caption, list_axis, ticks_at
 from .thinning import envelope
 
-# blue, pale orange and vermilion of Okabe and Ito: apart in every kind of colour vision and in grey
+# colours of Okabe and Ito: distinct in all colour vision and in grey
 PARTS = {
     "model_form": ("model form", Style(colour="#0072B2", dash="solid"), "/"),
     "numerics": ("numerics", Style(colour="#E69F00", dash="dash"), ""),
     "unexplained": ("unexplained", Style(colour="#D55E00", dash="dot"), "x"),
 }
 _WHOLE = ("whole", Style(colour="#000000", dash="solid"), "")
-# a logarithm has no zero [alpha]
+# least value on the logarithmic axis [alpha]
 _SMALLEST = 1e-10
-# a taller picture cannot be read any more; the table has them all
+# limit of the picture height; the table has all rows
 _MOST = 60
 
 

@@ -20,7 +20,7 @@ from .palette import DARK, GREY, SYMBOLS, Style
 from .picture import TIME, Array, Axis, Bars, Layer, Line, Panel, Picture, Rule, caption, tilt_axis
 from .thinning import envelope
 
-# smaller differences are drawn here: a logarithm has no zero [alpha]
+# least difference drawn on the logarithmic axis [alpha]
 SMALLEST = 1e-7
 _HEIGHT = 2.3  # [inch]
 
@@ -113,7 +113,7 @@ def _azimuth(view: CaseView) -> Panel:
     for label, trace in view.traces.items():
         turns = trace.rolling_angle / (2.0 * np.pi)
         known = turns[np.isfinite(turns)]
-        # azimuths are known up to whole turns: all start on the branch of the model
+        # azimuths are known up to whole turns: all start on the model's branch
         branch = round(float(known[0]) - origin) if len(known) else 0
         width = 1.6 if label in view.runs else 0.9
         layers.append(Line(x=trace.time, y=turns - branch, name=label, style=view.styles[label], width=width))
@@ -124,7 +124,7 @@ def _drift(view: CaseView, support: Support) -> Panel:
     """Relative distance from the circle (|T| - b)/b, at tilts large enough for a contact point."""
     layers = []
     for label, trace in view.traces.items():
-        # a guided model keeps to the circle: that line is zero
+        # zero line for guided models, which keep to the circle
         if trace.run.support != support or (label not in view.runs and support.guided):
             continue
         tilted = trace.tilt > TILTED * np.nanmax(trace.tilt)
@@ -200,7 +200,7 @@ def _reach(view: CaseView) -> float:
     cylinder, balance = view.case.cylinder, balance_of(view.case)
     largest = 0.0
     for trace in view.traces.values():
-        # a fallen cylinder would leave nothing to be seen of the rest
+        # axis cut, as a fallen cylinder would dwarf the rest
         upright = trace.tilt <= 1.2 * balance
         beside = np.abs(trace.centre_of_mass[upright, :2])
         largest = max(largest, float(np.nanmax(beside, initial=0.0)))

@@ -49,7 +49,7 @@ def pictures(results: Fragility) -> list[Picture]:
 
 def _ratios(results: Fragility) -> Picture | None:
     answers = main_contrasts(results)
-    # mean over several cylinders; the values of each are in the table
+    # mean over several cylinders only; values of each are in the table
     cylinder = ALL if len(results.facts["cylinders"]) > 1 else None
     rows = [
         row
@@ -93,7 +93,7 @@ def _curves(results: Fragility, cylinder: str, place: int) -> Picture:
     for support, title in _PANELS.items():
         labels = [name for name, own in methods.items() if own["support"] == support]
         shown = labels if support in _GUIDED else [*guided, *labels]
-        # a curve alone is compared with nothing, unless it is the only one
+        # single curves have no ratio, unless there is only one
         if labels and (len(shown) > 1 or len(methods) == 1):
             panels.append(_panel(results, cylinder, shown, title))
     measure = MEASURES[str(results.facts["measure"])]

@@ -145,7 +145,7 @@ def contour(x: Array, y: Array, values: Array, level: float) -> tuple[Array, Arr
     """Contour (n,), (n,) of values (len(y), len(x)) at `level`; NaN separates its pieces."""
     from contourpy import contour_generator
 
-    if min(values.shape) < 2:  # through a single row of cells there is none
+    if min(values.shape) < 2:  # a single row of cells has no contour
         return np.empty(0), np.empty(0)
     pieces = contour_generator(x, y, np.ma.masked_invalid(values)).lines(level)
     separated = [part for piece in pieces for part in (np.asarray(piece), np.full((1, 2), np.nan))]

@@ -26,7 +26,7 @@ def charts(picture: Picture) -> list[tuple[str, str]]:
     """Return title and HTML element of each panel."""
     elements = []
     for index, panel in enumerate(picture.panels):
-        # only `</` would end a script
+        # only `</` could end a script
         stated = json.dumps(chart(panel, picture), separators=(",", ":"), ensure_ascii=False).replace(
             "</", "<\\/"
         )

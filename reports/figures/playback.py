@@ -49,11 +49,11 @@ def playback(view: CaseView) -> dict[str, object] | None:
     return {
         "base_radius": cylinder.base_radius,
         "height": 2.0 * cylinder.half_height,
-        # a fall after the end of the case is played until its side is down
+        # playback continues after the case until the overturned side is down
         "length": max(view.case.length, *(float(trace.time[-1]) for trace in view.traces.values())),
         "runs": runs,
         "models": models,
-        # the model that each run is shown with at first
+        # initial partner of each run: its reduced model
         "partners": [list(view.references).index(view.partner(label)) for label in view.runs]
         if view.references
         else [],
@@ -95,7 +95,7 @@ def _pose(trace: Trace) -> Mapping[str, NDArray[np.float64]]:
     standing = ~np.isfinite(trace.rolling_angle) | ~np.isfinite(trace.contact_point[:, 0])
     tilt = np.where(standing, 0.0, trace.tilt)
     rolling_angle = np.where(standing, 0.0, trace.rolling_angle)
-    # a standing cylinder touches everywhere: any point of its rim will do
+    # a standing cylinder touches everywhere: any rim point serves
     touch_x = np.where(
         standing, trace.centre_of_mass[:, 0] + trace.case.cylinder.base_radius, trace.contact_point[:, 0]
     )

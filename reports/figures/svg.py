@@ -27,7 +27,7 @@ from .thinning import kept_points
 Keywords = dict[str, Any]  # arguments of a function of matplotlib
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
 WIDTH = 8.6
-# more points than such a column has pixels
+# sample limit beyond the pixels of such a column
 _POINTS = 1600
 _BELOW = -0.48  # offset of a legend from its panel [inch]
 _GRID = "#dddddd"
@@ -72,7 +72,7 @@ _EDGED_CELLS = 2500  # a white edge would hide more cells than these
 _MOST_WRITTEN = 64
 # range of the colour scale where white letters are read better
 _DARK = 0.6
-# no date: the same numbers give the same bytes
+# without date, so that equal numbers give equal bytes
 _METADATA: dict[str, dict[str, Any]] = {
     "svg": {"Date": None, "Creator": "rockwobble"},
     "pdf": {"CreationDate": None, "Creator": "rockwobble"},
@@ -131,7 +131,7 @@ def figure(picture: Picture, *, titled: bool = False, width: float | None = None
         if picture.legend == "below" and picture.entries():
             _legend(drawn, list(places.flat[: len(picture.panels)]))
         _settle(drawn)
-        # now, since each label asks all others for their place; one beside long names has its own room
+        # layout now, as each label asks all others; panels beside long names have separate space
         drawn.align_ylabels([axes for axes in drawn.axes if axes.get_ylabel()])
     return drawn
 

@@ -54,7 +54,7 @@ def _step(count: int, other: int) -> int:
 
 def _map(own: pd.DataFrame, step_x: int, step_y: int) -> Panel:
     first = own.iloc[0]
-    # one row a cell, as in every map
+    # one row per cell, as in every map
     tilts, outcomes = (
         own.pivot(index="scale", columns="semidiagonal", values=value)  # noqa: PD010
         for value in ("peak_tilt_over_alpha", "outcome")

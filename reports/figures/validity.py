@@ -33,7 +33,7 @@ from .picture import Array, Axis, Layer, Line, Panel, Picture, Rule, bar_ends, c
 
 _FREE_PANELS = 4
 _FAR = 1e3  # stands for infinity: beyond every scale, as a colour and a contour need a number
-_MODERATE = 2.0  # friction over tan(alpha): twice that of uplift
+_MODERATE = 2.0  # friction over tan(alpha), twice that of uplift
 # column of the cells, level, line where it is reached
 _LINES = (
     ("overturned", 0.1, "1 in 10 records overturns", Style(colour=DARK, dash="dash")),
@@ -85,7 +85,7 @@ def map_pictures(tables: Tables) -> list[Picture]:
             words = caption(name.replace("-", "_"), count=members, count_fewest=fewest)
             panels = _panels(known, _SHAKEN, column, _GAPS, _LINES, height=2.4)
             drawn.append(_maps(name, words, panels, shades))
-    if free["flat_turn"].isna().all():  # one model, and none to compare with
+    if free["flat_turn"].isna().all():  # one model only, without comparison
         return drawn
     every = np.unique(free["tan_alpha"])
     chosen = every[np.unique(np.linspace(0, len(every) - 1, _FREE_PANELS).round().astype(int))]
@@ -117,7 +117,7 @@ def _panels(
     for tan_alpha, rows in table.groupby("tan_alpha"):
         (x, x_ticks), (y, y_ticks) = (names(sorted(rows[axis].unique())) for axis in axes)
         across, up = axes
-        # one row a cell: an aggregation would take most of the time of the page
+        # one row per cell: an aggregation would take most of the page's time
         grid = rows.pivot(index=up, columns=across)  # noqa: PD010
 
         def cells_of(name: str, grid: pd.DataFrame = grid) -> Array:
@@ -170,10 +170,10 @@ def pictures(results: Validity) -> list[Picture]:
     """All figures of the report, in its order."""
     tables, uplift = results.tables, results.structure.uplift
     drawn = [_records(contrasts(tables)), *map_pictures(tables), _agreement(tables["following"])]
-    # a tendon leaves one model, so there is no second to tell apart
+    # one model with a tendon, so no second one to distinguish
     if not results.structure.tendon:
         drawn.append(_verification(tables["verification"]))
-    # a slab has no ring, and its base is not what slips first
+    # no ring and no base slip with a slab
     if not results.structure.slab_mass_ratio:
         drawn += [_slip(tables["slip"]), _rings(tables["rings"], uplift)]
     return [*drawn, _contact(tables, uplift)]
@@ -246,7 +246,7 @@ def _slip(table: pd.DataFrame) -> Picture:
 
 
 def _rings(table: pd.DataFrame, uplift: float) -> Picture:
-    # walls of another inclination or friction are in the table, and would be too many lines here
+    # other wall inclinations and frictions only in the table, as too many lines
     plain = table[has_walls(table) & (table["inclination"] == 0.0)]
     plain = plain[plain["friction"].isin(plain["friction"].mode()[:1])]
     plain = plain.assign(ratio=plain["peak"] / plain["recess_peak"])

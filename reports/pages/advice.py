@@ -33,9 +33,9 @@ _DEMANDS = (
     *("friction", "shear", "force", "moment", "wall_force", "shear_and_wall"),
     *("top_friction", "top_shear", "top_force", "tendon"),
 )
-# units in the box, where W is the weight that its head names
+# units in the box, with W as the weight in its head
 _UNITS = {"-": "", "weights": " W", "weights × b": " W b"}
-# what moves at the top, of a frame and of a cylinder; what carries it, a recess and none
+# moving part at the top of a frame and of a cylinder; supporting part of a recess and of flat ground
 _TOP = {True: "slab", False: "top"}
 _BELOW = {True: "recess", False: "ground"}
 # conditions stated with the input and not as warnings
@@ -163,7 +163,7 @@ def _numbers(advice: Advice, findings: Findings) -> Iterator[Row]:
         low, high = (number(group[f"chance_{end}"], "percent").removesuffix(" %") for end in ("low", "high"))
         share = f"{group['overturned']} of {known} ({low} to {high} %)"
         covered = _cell("covered", count=group["covered"] or None, count_all=known)
-        # "21 of 22" beside "overturns" would say that so many do
+        # "21 of 22" beside "overturns" would read as the overturning count
         without = _cell("yields" if yields else "no_limit" if covered else "overturns")
         share = _cell("yields_in", count=yields, count_all=known) if yields else share
         yield row(group["name"], share, covered, peak, without)

@@ -31,7 +31,7 @@ def print_checks(console: Console, checks: Checks) -> None:
         counts = Counter(result.outcome for result in of_group)
         words = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
         console.print(f"{TITLES.get(group, 'engines')}: {words}", highlight=False, markup=False)
-        if group == "baseline":  # another version, or other digits, are no failure
+        if group == "baseline":  # no failure: another version, or different last digits
             for note in dict.fromkeys(each.note for each in of_group if each.outcome == PASSED and each.note):
                 console.print(f"  {note}", highlight=False, markup=False, soft_wrap=True)
 

@@ -44,7 +44,7 @@ def command_lines(command: str, width: int) -> list[str]:
     """
     try:
         words = [shlex.quote(word) for word in shlex.split(command)]
-    except ValueError:  # no command of a shell: Python, whose lines break elsewhere
+    except ValueError:  # Python and no shell command, with other line breaks
         return [f"  {command}"]
     if not words or shlex.join(shlex.split(command)) != command:
         return [f"  {command}"]

@@ -40,7 +40,7 @@ from .wording import lines_of, some_of, statement, words
 SINGLY = 3
 # points of all lines of a page together: eleven bytes each
 _ALL_POINTS = 60_000
-# more are not to be seen, fewer are no curve
+# upper and lower limit of visible points of a curve
 _MOST_POINTS, _FEWEST_POINTS = 1500, 90
 _ALONE = ("figure", "budget")
 
@@ -92,7 +92,7 @@ def page_of(results: Comparison) -> Page:
 
 def _case(view: CaseView, results: Comparison, *, many: bool) -> dict[str, object]:
     rows, name = view.rows, view.case.name
-    # a page of many cases would hold too many
+    # too many for a page of many cases
     numbers, columns = ([], []) if many else all_columns(rows)
     findings = results.case_findings(name)
     return {
@@ -116,7 +116,7 @@ _MODES = tuple(f"mode.{name}" for name in words()["mode"])
 _HEADLINE = (*_MODES, *AGREE[0], *AGREE[1], "comparison.none")
 _ANSWERS = tuple(key for key in _HEADLINE if key != "mode.rocks")  # what a terminal says first
 _SUPPORTS = ("comparison.on_guide", "comparison.on_flat", "comparison.on_walls")
-# parts that a terminal leaves to the page
+# parts omitted in a terminal
 _CAUSES = ("slides", "support", "walls", "pass", "near_passes", "distributions")
 _USUAL = (*_HEADLINE, *_SUPPORTS, *(f"comparison.{cause}" for cause in _CAUSES))
 
@@ -240,7 +240,7 @@ def external_rows(summary: pd.DataFrame) -> list[Row]:
             "uplift": row.uplift_time_difference if math.isfinite(row.uplift_time_uncertainty) else None,
             "direction": _degrees(row.uplift_direction_difference, row.uplift_direction_uncertainty),
             "direction_uncertainty": _degrees(
-                # beyond half a turn there is nothing left to know
+                # agreement beyond half a turn means nothing
                 min(row.uplift_direction_uncertainty, math.pi),
                 row.uplift_direction_uncertainty,
             ),

@@ -35,7 +35,7 @@ def page_of(ensemble: Ensemble) -> Page:
         "contrasts": rows,
         "notes": [lines_of("diagnostic.one_column")[0]] if one_column else [],
         "headline": [statement(each) for each in findings if each.key in _ANSWERS],
-        # the pairs begin with the name of a method, which has no capital
+        # no capital: pairs begin with a method name
         "pairs": [f"{sentence(each)}." for each in findings if each.key == "ensemble.pair"],
         "findings": [statement(each) for each in findings if each.key not in (*_ANSWERS, "ensemble.pair")],
         "any_falls": bool(ensemble.methods["overturned"].any()),

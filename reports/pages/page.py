@@ -247,7 +247,7 @@ def _print_words(console: Console, text: str) -> None:
         shown = _as_printed(console, f"{words}{lead}")
         room = console.width - cell_len(Text.from_ansi(shown).plain.rpartition("\n")[2])
         console.out(shown, end="", highlight=False)
-        # a word that is longer than the line runs on: a break in it would be copied, too
+        # overlong words run on, as a break would be copied
         whole = [f" {command}"] if len(command) < room else ["", *command_lines(command, console.width)]
         for line in whole:
             console.print(line, markup=False, highlight=False, soft_wrap=True)

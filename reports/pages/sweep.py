@@ -20,7 +20,7 @@ def page_of(results: Sweep) -> Page:
     values = {
         "plan": plan,
         "findings": list(map(statement, results.findings())),
-        # the cases of a suite have conditions of their own
+        # suite cases have individual conditions
         "conditions": conditions(plan.get("options", plan)) if grid else [],
         "parts": results.summary().to_dict("records"),
         "columns": [

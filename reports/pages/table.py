@@ -84,7 +84,7 @@ def interval_form(form: str, *numbers: object) -> str:
     places, shown = 1 - math.floor(math.log10(half)), int(form[1:-1])
     if form.endswith("f"):
         return f".{min(max(places, 0), shown)}f"
-    # two digits of a hundred would take a power of ten
+    # two digits of a hundred need no power of ten
     whole = shown if 100.0 <= max(abs(low), abs(high)) < math.inf else 0
     return f".{max(min(places + 1 + math.floor(math.log10(abs(value))), shown), whole)}g"
 
@@ -99,9 +99,9 @@ def enumeration(words: Sequence[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-# how a number is rounded that others do not exceed, and one that others do not fall below
+# rounding of upper and of lower bounds
 _BOUNDS: Mapping[str, str] = {"most": ROUND_CEILING, "least": ROUND_FLOOR}
-_EXACT = 12  # digits beyond are those of binary arithmetic
+_EXACT = 12  # digits beyond are binary rounding
 
 
 def _round(value: float, form: str, rounding: str) -> float:
@@ -288,7 +288,7 @@ class Table:
         return "\n".join(parts) if self.folded else self._scroll_box(heads, "".join(parts))
 
     def _scroll_box(self, heads: str, body: str) -> str:
-        # words alone break where a phone has no room
+        # only words may break on a phone
         words = ' class="words"' if all(column.text for column in self.columns) else ""
         table = f"<table{words}><thead><tr>{heads}</tr></thead>{body}</table>"
         return f'<div class="scroll" tabindex="0">{table}</div>'

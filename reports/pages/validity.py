@@ -83,7 +83,7 @@ def page_of(results: Validity) -> Page:
     }
     if not structure.slab_mass_ratio:
         supports = _rings(tables["rings"], ["support"])[::-1]
-        supports[-1]["rolled"] = None  # nothing rolls out of an ideal recess
+        supports[-1]["rolled"] = None  # no roll-out in an ideal recess
         walls = _rings(tables["rings"], ["support", "clearance", "inclination", "friction"])
         values |= {"ring_level": INTENSITY * structure.uplift, "supports": supports, "rings": walls}
     return Page(name="validity", template="validity", values=values, pictures=drawn)

@@ -114,7 +114,7 @@ def check_ensemble(folder: Path) -> None:
         assert [int(higher), int(lower), int(compared)] == [(own > 1).sum(), (own < 1).sum(), len(own)]
         over = np.isinf(wide[[method, against]])
         assert [int(each or 0) for each in fallen] == [*over.sum(), over.all(axis=1).sum()]
-        # without members at an end signed ranks need no rule for them
+        # without members at an end, signed ranks need no special rule
         if np.isfinite(own).all() and (own > 0).all():
             p_value = float(wilcoxon(np.log(own)).pvalue)
             assert abs(float(p) - p_value) <= max(0.1 * p_value, 0.005)
@@ -127,7 +127,7 @@ def check_advice(folder: Path) -> None:
     rows = re.findall(r"\| (\d+) of (\d+) \(([\d.]+) to ([\d.]+) %\) \|", text)
     assert len(rows) >= 3
     for group, row in zip(("copies", "acceleration", "velocity"), rows, strict=False):
-        # of the shaking as given: weaker shaking by the same records asks, too, and counts for no share
+        # shares refer to unscaled records, demands to weaker ones as well
         runs = members[(members["group"] == group) & (members["factor"] == 1.0)]
         fell = (runs["outcome"] == "overturned").to_numpy()
         test = binomtest(int(fell.sum()), len(fell)).proportion_ci(0.95)

@@ -101,11 +101,11 @@ CERTIFICATES = {"reduced": "certify", "mujoco": "certify --engine mujoco"}
 NOT_KEPT = ("*.html", "finished")
 # tables once more, as text
 SHEETS = ("counts.csv", "counts.json", "members.csv")
-# a table beyond this is made again by the command that the page names [bytes]
+# table size above which only a command rebuilds it [bytes]
 LARGEST = 200_000
 # of a study that lacks one, and is drawn no more: what claims of other pages rest on
 STILL_KEPT = ("contrasts.parquet", "counts.parquet")
-# of the control no page is shown
+# pages of the control are not shown
 CONTROLS = {"fragility/half-step": (*STILL_KEPT, MANIFEST)}
 
 # modules of compare/external that need numpy alone: check.py of the benchmark imports them
@@ -234,7 +234,7 @@ def faults(place: Path = HERE) -> list[str]:
     rows = []
     for folder, made in manifests(place):
         name = f"{folder.relative_to(place).as_posix()} ({made.kind})"
-        if len(made.commit) != 40:  # no "+" either: the code was as committed
+        if len(made.commit) != 40:  # exactly 40 digits, without "+": the code was committed
             rows.append(f"{name}: was not made by committed code")
         rows += [
             f"{name}: {each} is damaged" for each in made.files if file_state(folder, made, each) == "damaged"
@@ -272,7 +272,7 @@ def _page_faults(folder: Path, made: Manifest) -> list[str]:
         if not (folder / "make.py").exists():
             return ["no command and no make.py draws such results"]
         if any(file_state(folder, made, each) != "whole" for each in made.files):
-            return []  # said above, where it is a fault
+            return []  # reported above as a fault
         script = [sys.executable, str(folder / "make.py"), "--check"]
         done = subprocess.run(script, env=ENVIRONMENT, capture_output=True, text=True, check=False)
         said = [row.removeprefix("FAULT ") for row in done.stdout.splitlines() if row.startswith("FAULT")]
@@ -376,7 +376,7 @@ def main() -> int:
         else:
             words = ["-m", "rockwobble", *words, "--out", folder, "--overwrite"]
         subprocess.run([sys.executable, *words], cwd=HERE, env=ENVIRONMENT, check=True)
-        if words[0] == "-m":  # a command draws its page, and no document
+        if words[0] == "-m":  # module command, which draws a page without document
             subprocess.run(
                 [sys.executable, "-m", "rockwobble", "report", folder], cwd=HERE, env=ENVIRONMENT, check=True
             )

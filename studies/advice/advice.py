@@ -224,7 +224,7 @@ class Advice(Results, kind=KIND):
     @property
     def yields(self) -> bool:
         """Whether the tendon yields as given, which leaves the run without a result."""
-        return bool(self.response.get("yields", False))  # unknown for results of earlier versions
+        return bool(self.response.get("yields", False))  # unknown in results of earlier versions
 
     @property
     def yielded(self) -> int:
@@ -416,7 +416,7 @@ def advise(
             groups[COPIES] = plan.perturbed(case)
             perturbed = [simulate_run(each, model, sample_step=DEMAND_STEP) for each in groups[COPIES]]
             # flat ground is left out: it has no anchor, and chatter of a closed base takes it minutes
-            stays = case.is_release or case.friction >= case.friction_of_uplift  # on flat ground, too
+            stays = case.is_release or case.friction >= case.friction_of_uplift  # holds on flat ground, too
             if stays and not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
                 few = groups[COPIES][:WEAKER_COUNT]  # few copies suffice for a ratio without part in grades
                 others = [simulate_run(each, other, sample_step=BAND_STEP) for each in few]

@@ -34,25 +34,25 @@ Array = NDArray[np.float64]
 
 # percentile of the moving time [%], which leaves out the spikes of the nearest passes
 SPIKES = 0.01
-# share of the runs of a group that do not exceed its demand
+# share of the runs of a group within its demand
 COVERED = 0.95
 # ratio of neighbouring intensities of weaker shaking
 LEVEL_RATIO = 2.0**0.25
 # [alpha] tilt that a run asks of a wall at least if it passes the balance, whether it overturns or comes back
 PASSED = 1.25
-ROUNDING = 1e-12  # relative, of sums and ratios of what acts together
+ROUNDING = 1e-12  # relative tolerance of sums and ratios of simultaneous actions
 _FIRST_LEVEL = -4  # first level, in steps from the uplift threshold
 
 _BASE = {"friction": "-", "shear": "weights", "force": "weights"}
 _TOP = {f"top_{name}": unit for name, unit in _BASE.items()}
-_SUMS = ("moment", "shear_and_wall")  # forces on a wall, alone and beside shear
+_SUMS = ("moment", "shear_and_wall")  # forces on a wall, without and with shear
 _RECESS = {"moment": "weights × b", "shear_and_wall": "weights", "tilt": "alpha"}
 # demands of a run with their units
 _TENDON = "tendon"  # tension, in weights of a column alone
 UNITS: Mapping[str, str] = {**_BASE, **_TOP, **_RECESS, _TENDON: "weights"}
-# other columns of each run
+# further columns of each run
 SHARES = ("slip", "lost")
-# columns with the largest of all samples as well
+# demands that are also stated as maxima over all samples
 PEAKS = {name: f"{name}_peak" for name in ("shear", "force")}
 # demands stated with their simultaneous actions, and these actions
 _LEADING = ("shear", "moment")
@@ -106,7 +106,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
     lengths = np.diff(trace.time, append=trace.time[-1])[moving]
     tilt, kappa = trace.tilt[moving], np.abs(trace.restraining_moment[moving]) / cylinder.base_radius
     forces = [(names, force[moving], friction[moving]) for names, force, friction in ends]
-    if not moving.any():  # one sample at rest
+    if not moving.any():  # a case with one moving sample
         lengths = tilt = kappa = np.zeros(1)
         forces = [(names, np.array([[0.0, 0.0, 1.0]]), np.zeros(1)) for names, *_ in ends]
     lost, slips = np.zeros((2, len(lengths)), dtype=bool)
@@ -153,7 +153,7 @@ def weaker_factors(threshold: float) -> list[float]:
     """
     if not 0.0 < threshold < math.inf:
         return []
-    # other records of the same peak velocity may move from below the threshold of this one
+    # other records of equal peak velocity may uplift at scales below this threshold
     levels = (threshold * LEVEL_RATIO ** (step + 0.5) for step in itertools.count(_FIRST_LEVEL))
     return list(itertools.takewhile(lambda factor: factor < 1.0, levels))
 

@@ -37,7 +37,7 @@ Advice = Any  # class of `.advice`, which imports this module
 _NO_SCALE = 1e9
 _NOTHING = 1e-3  # share of a demand below which a simultaneous action is omitted
 _ACTING = ("shear", "force", "moment")
-# columns of a frame: what lies on more than three ends rests on those that happen to be higher
+# columns of a frame: a slab on more than three rests on the highest ones
 _EVENLY_LOADED = 3
 
 
@@ -210,7 +210,7 @@ def _demands(advice: Advice) -> Iterator[Finding]:
             yield Finding(key=f"demand.{name}", values=values, runs=str(row["group"]))
     given = {name: rows[name] for name in _ACTING if name in rows and not math.isnan(rows[name]["value"])}
     for name, row in given.items():
-        # no moment where the support supplies none, or none is known
+        # no moment without a support that supplies it, or if unknown
         if name == "force" or math.isnan(row["with_force"]):
             continue
         acting = {part: row[f"with_{part}"] for part in given}
@@ -411,7 +411,7 @@ def _case(advice: Advice) -> Iterator[Finding]:
             stress_weight=stress,
             factor=tendon["uplift_factor"],
             bound=tendon["initial_stiffness"],
-            # elastic: beyond its yield it does not
+            # elastic limit of the tendon model
             peak=min(tendon["balance_tilt"], tendon.get("yield_tilt", math.inf)),
         )
     whole = mass * (1.0 + body.slab_mass_ratio)

@@ -33,7 +33,7 @@ NEAR = 1.5
 UNSAFE = 0.1
 # ratio by which the largest tilt may change under shaking as strong
 SENSITIVE = 1.5
-# margin of the ratio: the tilt may change by so much more between the scales that were run
+# margin of the ratio, for peaks between the simulated scales
 BETWEEN_SCALES = 1.05
 RANGE: Mapping[str, Value] = {"share_weaker": 1.0 - AS_STRONG[0], "share_stronger": AS_STRONG[1] - 1.0}
 
@@ -158,7 +158,7 @@ def _trace(advice: Advice) -> Iterator[Criterion]:
     values: dict[str, Value] = {
         "reason": end_of_motion(advice),
         "time": advice.response["peak_time"],
-        # a smaller difference than that of the copies, which is why it may come before
+        # a smaller difference may precede the divergence of the copies
         "difference": tolerance(advice) if methods else math.nan,
         "time_engine": trust.until if methods and ran else math.nan,
         "time_predicted": trust.until if methods and not ran else math.nan,

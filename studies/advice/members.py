@@ -47,7 +47,7 @@ OTHER = "other support"  # group of the copies on the other support
 # groups of copies with the vertical component of a record that the case leaves out, and without the one
 # that it has
 VERTICAL, HORIZONTAL = "with vertical", "without vertical"
-# groups of what is not the problem as stated: they are shown and count for no grade and no demand
+# groups outside of the stated problem: shown, without effect on grades and demands
 BESIDE_THE_PROBLEM = (OTHER, HORIZONTAL)
 # [s] of the samples of demands: of a short motion 99 % of the time at 0.02 s are all but its largest spike,
 # which rounding moves by a fifth; at 0.005 s they are within 2 % of those at 0.002 s
@@ -139,7 +139,7 @@ def run_rows(
         trace = simulate_run(dataclasses.replace(case, motion=motion), model, sample_step=DEMAND_STEP)
         return member_row(trace, group, factor)
 
-    # a motion that never uplifts is the same at every lower scale: one run stands for all
+    # one run represents all lower scales of a motion that never uplifts
     still = [each for each in cases if not each.is_release and uplift_of(each) > factor * (1.0 + _CLOSE)]
     at_rest = row(still[0]) if still else {}
     names = {id(each) for each in still}

@@ -108,7 +108,7 @@ def band_of(case: Case, traces: Sequence[Trace]) -> pd.DataFrame:
     """Tilts [alpha] not exceeded by 5 % and by 95 % of the copies at each time [s]: low, high."""
     time = np.arange(0.0, case.length, BAND_STEP)
     known = [trace for trace in traces if trace.outcome != "failed"]
-    # one that overturned stays on its side
+    # overturned copies keep their last tilt
     tilts = [np.interp(time, trace.time, trace.tilt / case.cylinder.alpha) for trace in known]
     low, high = np.quantile(tilts, [0.05, 0.95], axis=0) if known else np.full((2, len(time)), math.nan)
     return pd.DataFrame({"time": time, "low": low, "high": high})

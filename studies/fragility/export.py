@@ -103,7 +103,7 @@ def limits_by_function(results: Fragility) -> Iterator[tuple[str, list[Limit]]]:
             counts = counts[own & (counts["limit"] == fit["limit"])].sort_values("intensity")
             x = unit * counts["intensity"].to_numpy(float)
             share = np.maximum.accumulate((counts["k"] / counts["n"]).to_numpy(float))
-            # a level below uplift already has the share 0
+            # a level below uplift has a share of 0 already
             if uplift < x[0]:
                 x, share = np.r_[uplift, x], np.r_[0.0, share]
             name = _NAMES.get(fit["limit"], fit["limit"])
@@ -191,7 +191,7 @@ def _family(limit: Limit) -> list[object]:
     share = limit.share
     if len(share) < 2 or share[0] > 0.0 or share[-1] < 1.0:
         return ["", "", ""]
-    # shares must rise: of equal ones the last 0, and the first of others
+    # shares must increase strictly: of equal ones keep the last 0 and else the first
     rises = np.diff(share) > 0.0
     keep = np.where(share > 0.0, np.r_[False, rises], np.r_[rises, False])
     x, y = (",".join(f"{each:.9g}" for each in values[keep]) for values in (limit.intensity, share))

@@ -15,7 +15,7 @@ from .intensity import MEASURES
 from .tables import OVERTURNED, Row
 
 FEWEST_LEVELS = 2  # one level gives a curve no slope
-_MOST_WITHIN = 10.0  # margin above which an interval bounds nothing
+_MOST_WITHIN = 10.0  # margin beyond which an interval is no bound
 _POOR = 0.05  # below this probability the counts do not follow a lognormal curve
 _WALLED = tuple(each for each in SUPPORTS.values() if each.walls)
 _VERDICTS: Mapping[str, tuple[str, Level]] = {
@@ -134,7 +134,7 @@ def _curveless(fits: Iterable[Row], several: bool) -> Iterator[Finding]:
     for kind in (ONE_MOTION, SEPARATED, FALLING):
         methods: dict[str, list[str]] = {}
         for row in fits:
-            # bounds of the median of overturning are stated for the median
+            # bounds of the overturning median are stated with the median
             if row["kind"] == kind and not (kind == ONE_MOTION and row["limit"] == OVERTURNED):
                 methods.setdefault(str(row["limit"]).replace("_", " "), []).append(_method(row, several))
         limits: dict[tuple[str, ...], list[str]] = {}

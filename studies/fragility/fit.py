@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 FITTED, NEVER, ALWAYS, SEPARATED, FALLING = "fitted", "never", "always", "separated", "not increasing"
 EXTRAPOLATED, ONE_MOTION = "extrapolated", "one motion"
 KINDS = (FITTED, NEVER, ALWAYS, SEPARATED, FALLING, EXTRAPOLATED, ONE_MOTION)
-TOO_FEW = "too few"  # motions or levels: whatever the curve, it is not stated
+TOO_FEW = "too few"  # too few motions or levels for any curve
 _ITERATIONS, _HALVINGS = 60, 30
 # convergence limit of Newton's method, in standard deviations of the log intensity
 _TOLERANCE = 1e-11
@@ -124,7 +124,7 @@ def _between(
     higher, where fewer do no lower, and how far from it nobody knows but by the levels beside it.
     """
     there, at = n > 0.0, (x == lowest_hit[:, None]) & (highest_miss == lowest_hit)[:, None]
-    over = np.sign((at * (2.0 * k - n)).sum(axis=1))  # 0 where no level has both
+    over = np.sign((at * (2.0 * k - n)).sum(axis=1))  # 0 if no level has both outcomes
     low = _highest(x, there & (x <= highest_miss[:, None]) & ~(at & (over > 0.0)[:, None]))
     high = _lowest(x, there & (x >= lowest_hit[:, None]) & ~(at & (over < 0.0)[:, None]))
     with np.errstate(invalid="ignore"):

@@ -34,7 +34,7 @@ from rockwobble.models.hazard import HazardCurve
 
 from .fit import Array
 
-# frequency that no shaking exceeds [1/year]: a curve that begins steeply would exceed all numbers below it
+# largest frequency [1/year]: a steeply beginning curve would exceed all numbers below it
 OFTEN = 1e3
 
 
@@ -152,7 +152,7 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
     for row in np.flatnonzero(np.isnan(y).any(axis=1)):
         known[row] = _fill(x[row], y[row])
     lowest = known[:, 0]
-    # share 0 at uplift, unless that lies above the lowest level
+    # share 0 at uplift, if uplift lies below the lowest level
     first = np.minimum(uplift, x[:, 0])
     x = np.column_stack([first, x])
     y = np.column_stack([np.where(uplift < x[:, 1], 0.0, lowest), known])
@@ -164,7 +164,7 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
     tail = share * rate_at(hazard, last)
     pieces = _pieces(hazard, x, y, np.full(len(x), begin))
     total = pieces.sum(axis=1) + tail
-    # lowest level, or first point, within the curve: below it nothing is run, or known
+    # start of integration: lowest level or first hazard point; nothing is known below
     met = np.clip(x[:, 1], begin, end)
     at_met = np.array([np.interp(*each) for each in zip(met, x, y, strict=True)])
     nothing_run = end < x[:, 1]

@@ -41,7 +41,7 @@ class Measure:
     unit: str
 
 
-# the peak acceleration in the unit of what slides: as efficient, and only where it is asked for
+# peak acceleration in the unit of sliding: equally efficient, and only on request
 OVER_FRICTION = "peak_over_friction"
 MEASURES: Mapping[str, Measure] = {
     "peak_acceleration": Measure(title="peak acceleration / g tan α", unit="-"),
@@ -133,7 +133,7 @@ def pseudo_acceleration(motion: GroundMotion, period: float) -> Array:
     return np.asarray(lfilter(numerator, denominator, -a, axis=0), dtype=np.float64)
 
 
-@cache  # it takes longer than the motion, and most motions of a study have one step
+@cache  # the transfer function takes longer than the motion, and most motions have equal steps
 def _oscillator(period: float, step: float) -> tuple[Array, Array]:
     """Transfer function from -a to omega^2 x with first-order hold: numerator, denominator."""
     from scipy.signal import cont2discrete
@@ -160,7 +160,7 @@ def _value(name: str, motion: GroundMotion, cylinder: RockingBody, gravity: floa
 
 def velocity_unit(cylinder: RockingBody, gravity: float = 9.81) -> float:
     """Return g tan(alpha)/p, the unit of peak velocities of a cylinder [m/s]."""
-    from rockwobble.reduced.body import body_of  # the folder loads a compiler
+    from rockwobble.reduced.body import body_of  # late import, as the package loads a compiler
 
     return gravity * cylinder.tan_alpha / body_of(cylinder, gravity).p
 

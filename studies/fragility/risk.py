@@ -309,7 +309,7 @@ def frequency_interval(
     if few or of_motions.high == math.inf:
         low = 0.0 if few else of_motions.low * least / total
         high = max(exposure.largest(hazard), most)
-    elif math.isnan(of_motions.low):  # no motion differs from the others: only the levels bound it
+    elif math.isnan(of_motions.low):  # all motions are equal: only the levels bound the value
         low, high = exposure.between_levels(hazard)
     else:
         low, high = of_motions.low * least / total, of_motions.high + most - total

@@ -204,7 +204,7 @@ class Task:
         from rockwobble import reduced
 
         cylinder, motion = case.cylinder, cast("GroundMotion", case.motion)
-        # the processes share the cores already
+        # processes share the cores already, so one thread each
         common: dict[str, Any] = {"workers": 1, "gravity": case.gravity}
         if slides_by_model(case, self.run):
             moved = reduced.peak_displacements([case.friction], motion, scales, **common)[0]
@@ -360,7 +360,7 @@ class RunPlan(Study[Task, pd.DataFrame]):
                     row: dict[str, object] = {"cylinder": name, "motion": motion.name, "step": step}
                     row |= {"scale": scale, "uplift_scale": lifts[index], "synthetic": motion.synthetic}
                     row |= {measure: scale * values[index] for measure, values in own.items()}
-                    if asked.levels is not None:  # one level for all, to the last bit
+                    if asked.levels is not None:  # common levels, bitwise
                         row[asked.measure] = float(asked.levels[step])
                     rows.append(row)
         return pd.DataFrame(rows)
@@ -509,7 +509,7 @@ def _has_default_step(method: Method) -> bool:
 
 KEYS = ["cylinder", "motion", "step"]
 _OF_RUN = ["peak_tilt", "outcome", CONTACT_LOST, SLIDES]
-_ENDS = [*NO_PEAK, "overturned", YIELDED]  # the worst first
+_ENDS = [*NO_PEAK, "overturned", YIELDED]  # outcomes by decreasing severity
 
 
 def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:

@@ -39,7 +39,7 @@ from .fit import (
 from .intensity import MEASURES
 
 OVERTURNED, CONTACT_LOST, TENDON_YIELDS, SLIDES = "overturned", "contact_lost", "tendon yields", "slides"
-# name: the tilt that is reached [alpha]; NaN where it is no tilt that decides
+# limits by name: tilt reached [alpha]; NaN if the limit is no tilt
 LIMITS: Mapping[str, float] = {
     "uplift": 0.0,
     **{f"{tilt:g} alpha": tilt for tilt in (0.1, 0.25, 0.5, 1.0)},
@@ -231,7 +231,7 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
                 **median.exponential().columns("median"),
                 **dict(zip(MEDIANS_OF_FAILED, _bounds_of_failed(sample, blocks.made), strict=True)),
                 **spread.columns("dispersion"),
-                # beyond the intensities that were run
+                # medians beyond the intensities run
                 "extrapolated": not x.min() <= middle <= x.max(),
                 "without_curve": float((many.kinds != KINDS.index(FITTED)).mean()),
                 **held,
@@ -240,9 +240,9 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
     return pd.DataFrame(rows)
 
 
-# medians if all runs that failed exceed the limit, and if none does
+# medians if all failed runs exceed the limit, and if none does
 MEDIANS_OF_FAILED = ("median_if_exceeded", "median_if_not")
-# the least and the largest ratio of two medians, whatever the runs that failed would have done
+# least and largest ratio of two medians over all outcomes of the failed runs
 RATIOS_OF_FAILED = ("ratio_least", "ratio_most")
 
 
@@ -307,7 +307,7 @@ def contrast_table(
                 own, many = [each.curves() for each in pair], [each.curves(weights) for each in pair]
             entries[cylinder] = [_differences(own), _differences(many), bounds]
         if len(entries) == len(blocks.cylinders) > 1:
-            with np.errstate(invalid="ignore"):  # a median beyond all levels and one below have no ratio
+            with np.errstate(invalid="ignore"):  # medians above and below all levels have no ratio
                 entries[ALL] = [np.mean(each, axis=0) for each in zip(*entries.values(), strict=True)]
         rows += [
             {"cylinder": cylinder, "limit": limit, "method": method, "against": against}
@@ -321,7 +321,7 @@ def contrast_table(
 def _differences(pair: Sequence[Curves]) -> Array:
     """Differences (4, B): log medians, dispersions, and the least and largest of the first."""
     first, second = ([each.median, each.dispersion, each.low, each.high] for each in pair)
-    with np.errstate(invalid="ignore"):  # two curves that are never reached have no ratio
+    with np.errstate(invalid="ignore"):  # curves that are never reached have no ratio
         return np.asarray(np.subtract(first, [*second[:2], *second[:1:-1]]), dtype=np.float64)
 
 
@@ -373,7 +373,7 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
     """
     rows = []
     motions = len(blocks.motions)
-    several = blocks.cylinders if blocks.made.all() else []  # a motion of one level has no gap
+    several = blocks.cylinders if blocks.made.all() else []  # motions of one level each have no gaps
     for cylinder, method in itertools.product(several, blocks.methods):
         sample = blocks.sample(cylinder, method, OVERTURNED)
         if np.isnan(sample.y).all():
@@ -385,7 +385,7 @@ def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
         with np.errstate(invalid="ignore"):
             value = float(early.median[0] - whole.median[0])
             ends = np.array([many_early.low - many.high, many_early.high - many.low])
-        # equal counts give equal curves, also where both are beyond the levels
+        # equal counts have equal curves, also beyond the levels
         same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
         low, high = np.where(same, 0.0, ends)
         counts = int(gaps.any(axis=1).sum()), int((~np.isnan(sample.y)).sum()), int(gaps.sum())

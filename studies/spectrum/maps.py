@@ -209,7 +209,7 @@ def tilt_maps(
     [[False, True], [False, False]]
     """
     study = MapStudy(runs_of(tan_alpha, motion, plan or SpectrumPlan()), workers)
-    return study.run(folder=resume, workers=1, progress=progress)  # each part runs in threads
+    return study.run(folder=resume, workers=1, progress=progress)  # one worker, as each part runs in threads
 
 
 @dataclass(frozen=True, slots=True)

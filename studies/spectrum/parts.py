@@ -256,7 +256,7 @@ def run_part(part: SpectrumPart) -> pd.DataFrame:
         tendon=plan.tendon,
         **series_options(part.series, plan.support),
     )
-    case = runs.case(float(sizes[0]), 1.0)  # the tilt of yield is that of all sizes
+    case = runs.case(float(sizes[0]), 1.0)  # the yield tilt is equal for all sizes
 
     def run(semidiagonals: Array, intensities: Array, **given: Any) -> Array:
         tilts = elastic(semidiagonals, scales=runs.unit * intensities, **given)

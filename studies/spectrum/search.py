@@ -30,7 +30,7 @@ _COARSEST = 8.0  # coarsest step in units of the finest, where nothing asks for 
 # A step is halved where a tilt that goes on as fast as there, or in one of the two steps beside it on either
 # side, reaches alpha within so many times its length: next to a window the tilt changes fast.
 _REACH, _BESIDE = 6.0, 2
-_SPARE = 10  # as a tenth more are drawn, one that overturns near the lowest asks for no others
+_SPARE = 10  # a tenth of reserve: overturning near the lowest intensity needs no further draws
 _CLOSE = 1e-6  # relative distance to uplift below which no intensity is drawn
 
 
@@ -83,7 +83,7 @@ def search_lowest(
             levels, tilts = levels[: fell.argmax() + 1], tilts[: fell.argmax() + 1]
         widths = np.diff(levels)
         slopes = np.pad(np.abs(np.diff(tilts)) / widths, _BESIDE)
-        # a failed run tells nothing of the steps beside its own
+        # a failed run says nothing about neighbouring steps
         steepest = np.fmax.reduce([slopes[i : i + len(widths)] for i in range(2 * _BESIDE + 1)])
         reached = np.fmax(tilts[:-1], tilts[1:]) + _REACH * steepest * widths > alpha
         halved = np.flatnonzero(reached & (widths > step * (1.0 + 1e-9)))

@@ -108,7 +108,7 @@ def _share(which: NDArray[np.bool_]) -> float:
 
 
 def _median(lowest: Array) -> float:
-    # the upper of two middle values: their mean with infinity would hide a finite one
+    # upper middle value: a mean with infinity would hide a finite value
     return float(np.quantile(_or_infinite(lowest), 0.5, method="higher"))
 
 
@@ -120,7 +120,7 @@ CHECK_RTOL = 1e-9
 # Relative change of the record. A cell that it changes as much as the tolerance of the grid does is a
 # matter of chance and says nothing of accuracy.
 NUDGE = 1e-9
-# a cell overturns for sure where it does so at all three of these factors on its record
+# a cell counts as overturned only if it overturns at all three factors on its record
 CONFIRMING = (1.0, 1.0 - NUDGE, 1.0 + NUDGE)
 SAME_PEAK = 0.02  # relative difference of peak tilt allowed between two runs of a cell
 CELLS = 60  # enough to find one wrong cell in twenty almost surely, in half a second

@@ -25,7 +25,7 @@ Tables = Mapping[str, "pd.DataFrame"]
 Flags = NDArray[np.bool_]
 
 POINT = list(POINT_NAMES)
-# two methods that are compared; the last shows how far a recess with clearance has converged
+# pairs of compared methods; the last one measures convergence of a recess with clearance
 CONTRASTS = (
     *((support, RECESS.model) for support in RECESSES_FIRST),
     (FLAT.model, RECESS.model),
@@ -33,14 +33,14 @@ CONTRASTS = (
     (HALVED, RING),
 )
 _SHARE = 0.9
-FEWEST = 10  # nine in ten of fewer motions is all of them
-# [b], or of alpha, in one period: less is the creep of a contact that never lets go
+FEWEST = 10  # fewest motions for a 90th percentile
+# [b] or alpha per period: creep of a contact that never opens is smaller
 SLIPPED = 1e-3
 # [weight times base radius]: a tenth of what would tip the cylinder about its rim
 SLIGHT = 0.1
 ALIKE = 0.01  # relative difference of period, angle of turn or peak that no shake-table test would see
 SMALL = 0.05  # relative difference of peak tilt: less cannot be told from chance
-# an engine confirms a model if it is nearer to it than this share of the difference of the models
+# an engine confirms a model within this share of the difference of the models
 CONFIRMS = 0.5
 # and contradicts it where turn or period is off by more than this; the step of an engine errs by less
 _CONTRADICTS = 1e-3
@@ -394,7 +394,7 @@ def _stiffness(table: pd.DataFrame) -> Finding:
     """Finding on the largest contact softness (time constant times p) that leaves the peak unchanged."""
     known = table[~table["failed"]]
     off = (known["ratio"] - 1.0).abs()
-    # one contact is one point, though its softness differs by slenderness in the third digit
+    # one contact is one point, although its rounded softness differs by slenderness
     held, _ = limit_of(known["time_constant"], off <= SMALL)
     stiff = table[table["time_constant"] <= held]  # none where it is NaN
     failed = stiff[stiff["failed"]]
@@ -414,7 +414,7 @@ def _records(tables: Tables, table: pd.DataFrame) -> Iterator[Finding]:
     runs = tables["records"]
     low, high = _ends(table, HALVED, "ratio_05"), _ends(table, HALVED, "ratio_95", "ratio_95")
     if math.isfinite(high["ratio_95_least"]):
-        # nine in ten have the same peak at half the step
+        # 90 % of the motions have equal peaks at half the step
         converged = low["ratio_least"] >= 1.0 / (1.0 + MARGIN) and high["ratio_95_largest"] <= 1.0 + MARGIN
         key = "converged" if converged else "not_converged"
         yield _finding(f"records.{key}", "note" if converged else "caution", **_ends(table, HALVED), **high)
@@ -461,10 +461,10 @@ def _releases(tables: Tables) -> Iterator[Finding]:
 def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
     free, peaks, slip = (tables[name] for name in ("free_response", "peaks", "slip"))
     yield _finding("force.friction", ratio=largest(free["friction"] / free["tan_alpha"]))
-    # slip is counted at the base; under a slab it shows as a tilt that errs, or as energy that ends the run
+    # slip is counted at the base; slip under a slab appears as tilt error or energy end of a run
     slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | slip["outcome"].isin(NO_PEAK)
     slips_at, sticks = largest(slip.loc[slipped, "share"]), slip.loc[~slipped, "share"]
-    # a base that slips at one release does not stick at all
+    # no sticking base if it slips at one release
     values = {"share": slips_at, "bound": least(sticks[~(sticks <= slips_at)])}
     if not structure.slab_mass_ratio:  # only without a slab, as slip at its base is then all slip
         nearest = slip[slip["share"] == slips_at]
@@ -498,7 +498,7 @@ def _rings(tables: Tables) -> Iterator[Finding]:
         bound_free=largest(ring.loc[free, "twist"].abs()),
     )
     yield _finding("ring.touched", runs=len(touched), runs_all=len(ring), share=largest(touched["loss"]))
-    # the one whose peak is farthest from that of the recess model
+    # member farthest from the peak of the recess model
     known = shaken[shaken["outcome"] != "failed"]
     ratio = known["peak"] / known["recess_peak"]
     with np.errstate(divide="ignore"):

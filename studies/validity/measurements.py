@@ -115,7 +115,7 @@ def measure_free_response(
         }
 
 
-_VERIFIED_PERIODS = 2.2  # the second maximum, and a little more, so that it is seen to be one
+_VERIFIED_PERIODS = 2.2  # periods up to just after the second maximum
 _FRICTION = 10.0  # ample, as friction is another limit
 
 
@@ -175,8 +175,8 @@ def measure_slip(
         }
 
 
-# the record of the perturbed copy is stronger by this: no record is known better, and no model can be asked
-# for more than what it changes
+# relative change of the record in the perturbed copy: no record is known better, and no model can be
+# more accurate than its effect
 COPY = 0.01
 _RTOL = 1e-7
 

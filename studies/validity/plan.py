@@ -27,7 +27,7 @@ from ..plans import TendonPlan
 # coordinates of a point, by name
 RELEASE = ("tan_alpha", "release", "spin")
 POINT = ("tan_alpha", "semidiagonal", "intensity")
-# motions and methods of tables
+# tables with motions and methods
 FREE, EL_CENTRO = "free response", "El Centro 1940"
 PERTURBED = "perturbed copy"
 HALVED = f"{RING}, half the step"
@@ -318,5 +318,5 @@ def motion_named(name: str) -> GroundMotion:
     kind, number = name.rsplit(" ", 1)
     if kind == "record" and not missing_packages():
         return p695_far_field(int(number))
-    # each with a seed of its own: a larger ensemble begins with a smaller one
+    # separate seeds, so that a larger ensemble begins with the smaller one
     return synthetic_motions(2, peak=1.0, seed=_SYNTHETIC_SEED + int(number))[0]

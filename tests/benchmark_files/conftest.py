@@ -24,7 +24,7 @@ from benchmark_files.submission import Table, submit
 from benchmark_files.write import PUBLISHED
 
 EXIT = {"exact": 0, "good": 0, "pass": 0, "fail": 1, "rejected": 2}
-# a case of one run out of three
+# case with one run out of three
 SINGLE, SPIN = "turn-once", "spin-0.1"
 
 
@@ -62,7 +62,7 @@ def check(copied: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mo
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # its dataclasses look there
+    sys.modules[spec.name] = module  # lookup by its dataclasses
     sys.path.insert(0, str(folder))  # as where a program is run
     spec.loader.exec_module(module)
     yield module

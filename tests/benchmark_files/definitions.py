@@ -158,7 +158,7 @@ def steady() -> Definition:
 def uplift() -> Definition:
     """Uplift on a ramp of the ground acceleration, in 24 directions."""
     body = Cylinder(semidiagonal=2.0, tan_alpha=0.3)
-    rate = G * body.tan_alpha  # [m/s^3]: it lifts after one second
+    rate = G * body.tan_alpha  # [m/s^3]: uplift after one second
     runs = []
     for degrees in range(0, 360, 15):
         angle = math.radians(degrees)
@@ -246,7 +246,7 @@ def records() -> Definition:
         samples = noise(Random(1940 + index), 0.02, 20.0, 2)
         samples *= 2.2 * G * PIER.tan_alpha / np.hypot(*samples.T).max()
         samples[[0, -1]] = 0.0
-        kept = GroundMotion(np.round(samples, 4), 0.02)  # as published
+        kept = GroundMotion(np.round(samples, 4), 0.02)  # rounded as published
         runs.append(BenchmarkRun(f"record-{index + 1:02d}", PIER, "recess", kept.duration, motion=kept))
     share = {"pass": 9.01 / 22.0, "good": 5.01 / 22.0, "exact": 1.01 / 22.0}
     criteria = ({"name": "peak_tilt", "kind": "distribution", "unit": "share", **share},)
@@ -300,7 +300,7 @@ def impact() -> Definition:
     """One sine in one direction: each impact conserves the moment of momentum."""
     time = 0.005 * np.arange(161)
     push = np.column_stack([0.65 * G * np.sin(2.0 * math.pi * time / 0.8), np.zeros(161)])
-    motion = GroundMotion(np.round(push, 6), 0.005)  # as published
+    motion = GroundMotion(np.round(push, 6), 0.005)  # rounded as published
     more: dict[str, Any] = {"friction": 5.0, "levels": {"lean_level": 0.01}, "closes": True}
     runs = tuple(BenchmarkRun(support, SQUAT, support, 2.0, motion=motion, **more) for support in SUPPORTS)
     criteria = (

@@ -54,10 +54,10 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
             left_out[path.name], problems[path] = f"its runs last over {_LONG:g} s", {}
         traces: dict[str, Trace] = {}
         for name, (case, support) in problems[path].items():
-            start = time.process_time()  # not the wall: other work on the machine is none of an engine's
+            start = time.process_time()  # processor time: other work on the machine does not count
             try:
                 trace = traces[name] = _simulate(engine, case, support, variant)
-            except ValueError as error:  # what an engine cannot do
+            except ValueError as error:  # tasks an engine cannot do
                 cannot[path.name] = str(error)
                 continue
             if engine != REDUCED:
@@ -80,7 +80,7 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
             "version": version,
             "settings": words,
             "time_step": _step_in_words(variant) if engine != REDUCED else "of its tolerance, 1e-8 relative",
-            # of all cases: one alone does not stand for them
+            # mean over all cases, as one is not representative
             "seconds_a_step": old.get("seconds_a_step") or (statistics.median(costs) if costs else None),
             "cannot": cannot,
             "left_out": left_out,

@@ -104,7 +104,7 @@ def judged(definition: Definition, mistake: str) -> tuple[str, float] | None:
     motions = {}
     for name, run in changed.items():
         spacing = definition.step * run.time_unit
-        if run.slides:  # it slides, which this formulation does not
+        if run.slides:  # sliding is outside of this formulation
             motions[name] = check().read_motion(case.runs[name], slid(run, spacing))
             continue
         end = spacing * round(run.duration / spacing)

@@ -102,7 +102,7 @@ def _of_slide(name: str, run: BenchmarkRun, times: Array, model: Array, other: A
 def _both(definition: Definition, run: BenchmarkRun) -> tuple[Sampled, Sampled]:
     spacing = definition.step * run.time_unit
     end = spacing * round(min(run.duration, definition.end or math.inf) / spacing)
-    # quantities far out need the whole run
+    # far quantities need the complete run
     whole = spacing * round(run.duration / spacing)
     end = whole if any(c["name"].endswith("_100") for c in definition.criteria) else end
     return first(run, spacing, end), sampled(run, spacing, end)
@@ -116,7 +116,7 @@ def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
         return energy_kept(*(measured(f"maximum_{int(digits) + k}", run, trace) for k in (0, 1)), alpha)
     if kind in ("turn", "period", "maximum"):
         falls = np.flatnonzero((trace.tilt_rate[:-1] > 0.0) & (trace.tilt_rate[1:] <= 0.0))
-        falls = falls[falls > 0]  # a release is a maximum itself, to rounding
+        falls = falls[falls > 0]  # a release is a maximum up to rounding
         at = _root(time, trace.tilt_rate, int(falls[int(digits) - 1]))
         if kind == "period":
             return at / int(digits)
@@ -132,7 +132,7 @@ def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
     if name == "lean_time":
         return at
     azimuth = _value(time, trace.azimuth, at) % (2.0 * math.pi)
-    # an azimuth of 0 may round to one turn less a rounding
+    # an azimuth of 0 may round to just below a full turn
     return azimuth - 2.0 * math.pi if 2.0 * math.pi - azimuth < 1e-9 else azimuth
 
 
@@ -221,7 +221,7 @@ def _columns(
         apart = np.abs(np.angle(np.exp(1j * (one[1] - two[1])[leans])))
         bounds["azimuth"] = max(bounds["azimuth"], float(apart.max()))
         label = "" if shared or len(named) == 1 else f":{run.name}"
-        if shared and "tilt" in columns:  # every run certifies the one that stands there
+        if shared and "tilt" in columns:  # every run certifies the common value
             bounds["tilt"] = max(bounds["tilt"], float(np.abs(one[0] - columns["tilt"]).max()))
             continue
         columns[f"tilt{label}"] = one[0]

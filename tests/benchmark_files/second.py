@@ -35,7 +35,7 @@ class Sampled(NamedTuple):
     azimuth: Array
 
 
-@numba.njit  # not kept: what is kept would not notice that another file has changed
+@numba.njit  # uncached: a cache would miss changes of other files
 def advance(
     P: Array, p: float, y: Array, length: float, a: Array, slope: Array, rtol: float, first: float
 ) -> tuple[Array, float]:
@@ -49,7 +49,7 @@ def advance(
             continue
         y, at = new, length if at + tried >= length else at + tried
         grown = tried * min(5.0, 0.9 * max(error, 1e-9) ** -0.125)
-        size = grown if tried >= size else max(grown, size)  # the last step of a piece may be cut short
+        size = grown if tried >= size else max(grown, size)  # last step of a piece, possibly cut short
     return y, size
 
 

@@ -91,7 +91,7 @@ def test_converged_solution_is_graded_exact(judge: Judge, name: str) -> None:
 def test_every_file_format_is_read(judge: Judge, name: str, form: Form) -> None:
     judged = judge(name, tables(name, form))
     assert judged.verdict == "exact", judged.text
-    # on flat ground positions do not tell where it leans
+    # positions alone do not reveal the tilt direction on flat ground
     complete = form is quaternions or name == "turn-recess"
     assert judged.result["grade"] == ("satisfied" if complete else "caution")
     asked = len(judged.result["criteria"])
@@ -116,9 +116,9 @@ def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name
     judged = judge(name, sparse(tables(name, tilt_and_azimuth, larger=0.01)))
     assert judged.verdict == "fail"
     assert list(judged.mistakes) == ["time_scale"]
-    # a spin that was not scaled, too, adds a little
+    # an unscaled spin contributes a little
     assert 1.0 <= 100.0 * (judged.mistakes["time_scale"] ** 2 - 1.0) <= 1.2
-    # times go with the root of the size
+    # times scale with the root of the size
     assert 0.95 < judged.errors["period_1"] / (np.sqrt(1.01) - 1.0) < 1.3
 
 

@@ -241,8 +241,8 @@ def test_scoreboard_distinguishes_impossible_from_not_run() -> None:
         row = next(row for row in table[1:] if row[0].startswith(code))
         return dict(zip(table[0], row, strict=True))
 
-    assert cells("exudyn")["Angle of turn and period in a recess"] == "cannot"  # it has flat ground alone
-    assert cells("drake")["Energy over 100 passes"] == "not run"  # a step takes twenty times as long
+    assert cells("exudyn")["Angle of turn and period in a recess"] == "cannot"  # flat ground only
+    assert cells("drake")["Energy over 100 passes"] == "not run"  # step that takes twenty times as long
     about = json.loads((PUBLISHED / "results" / "rapier-extrapolated" / "about.json").read_text())
     extrapolated = cells(f"rapier {about['version']}, extrapolated")
     assert extrapolated["Energy over 100 passes"] == "left out"

@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    # the folder of the package in place of that of its modules, for the processes of a script, too
+    # package folder ahead of its modules, for the processes of a script, too
     sys.path[0] = str(TESTS)
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(TESTS), os.environ.get("PYTHONPATH")]))
     sys.exit(main())

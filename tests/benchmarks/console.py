@@ -47,7 +47,7 @@ def show(table: pd.DataFrame, title: str, formats: Mapping[str, str], note: str 
         shown.add_column(heading, justify=side, overflow="fold", no_wrap=not fold)  # type: ignore[arg-type]
     for row in table.to_dict("records"):
         shown.add_row(*(_text(row[name], form) for name, form in formats.items()))
-    # a table that is read by a program or kept in a file is not folded to the width of no terminal
+    # unfolded output for programs and files
     console = Console(width=None if sys.stdout.isatty() else 200)
     console.print(shown)
 

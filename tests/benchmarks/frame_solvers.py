@@ -122,7 +122,7 @@ class Frame:
         place[:-1, :2] += self.plan
         place[-1] = 2.0 * ideal.position + [self.offset, 0.0, 0.5 * self.thickness]
         turn[-1, 0], velocity[-1] = 1.0, 2.0 * ideal.velocity
-        if count == 3 and longer:  # it lies on all three
+        if count == 3 and longer:  # rests on all three
             rise = np.linalg.solve(np.column_stack([np.ones(3), self.plan]), [longer * axis[2], 0.0, 0.0])
             place[-1, 2] += rise[0]
             turn[-1, 1:3] = 0.5 * rise[2], -0.5 * rise[1]
@@ -167,9 +167,9 @@ def by_mujoco(
         mujoco.mju_rotVecQuat(inward, spin[i], turn[i] * [1.0, -1.0, -1.0, -1.0])
         data.qvel[6 * i : 6 * i + 6] = *velocity[i], *inward
     if free == frame.columns:
-        data.qvel[6 * free :] = velocity[-1]  # its slides begin where it is released
+        data.qvel[6 * free :] = velocity[-1]  # sliders start at the release
     mujoco.mj_forward(model, data)
-    data.qvel[:] -= 0.5 * step * data.qacc  # leapfrog
+    data.qvel[:] -= 0.5 * step * data.qacc  # leapfrog start
     every = round(SAMPLE / step)
     steps = every * round(frame.duration / SAMPLE)
     gravity = -frame.ground(steps, step) - [0.0, 0.0, G]

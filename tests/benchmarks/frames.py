@@ -20,7 +20,7 @@ from rockwobble.multibody.engines.registry import find_engine, own_engines
 from .console import options_of
 from .frame_solvers import SAMPLE, Frame, Motion, by_bullet, by_engine, by_mujoco, by_springs
 
-APART = 0.01  # of alpha, by which columns that are out of step differ
+APART = 0.01  # share of alpha by which columns differ out of step
 Row = tuple[str, Frame, Callable[[Frame], Motion]]
 
 

@@ -52,7 +52,7 @@ def test_guide_benefit_of_a_deck_matches_the_table(medians: pd.DataFrame) -> Non
             words = "{:.2f} ({:.2f} to {:.2f})".format(*numbers)
             assert words in WORDS.replace("\n", " ")
             assert table is few or words in " ".join(GUIDE.read_text(encoding="utf-8").split())
-    # and the larger cylinder is as good
+    # equal benefit of the larger cylinder
     rows = medians[medians["slab_mass_ratio"] > 0.0]
     assert ((rows["over_equivalent_low"] <= 1.0) & (rows["over_equivalent_high"] >= 1.0)).all()
 
@@ -69,7 +69,7 @@ def test_guide_demands_of_a_deck_match_the_table() -> None:
 def test_planar_motion_under_a_deck_equals_a_larger_cylinder(motions: str) -> None:
     table = pd.read_csv(PUBLISHED / f"medians-{motions}.csv")
     planar = table[table["method"].str.startswith("planar") & (table["slab_mass_ratio"] > 0.0)]
-    # the levels that rounding decides; synthetic motions have none
+    # levels at which rounding decides; synthetic motions have none
     assert planar["over_equivalent"].to_numpy() == pytest.approx(1.0, abs=0.02)
 
 

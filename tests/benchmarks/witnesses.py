@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 G = 9.81
 BODY = Cylinder.from_dimensions(base_radius=1.0, height=4.0)
 LONGEST = 500.0  # [s] of one process
-# when a motion in space is compared [s]
+# times of comparison of spatial motion [s]
 MOMENTS = (0.48, 0.72, 0.96, 1.20, 1.44, 1.68, 1.92, 2.16, 2.40)
 LMGC90: Sequence[tuple[str, dict[str, Any]]] = (
     ("plane", {"corners": 16, "step": 2e-4}),

@@ -197,7 +197,7 @@ def test_every_comparison_file_and_manifest_key_is_documented(tmp_path: Path) ->
     keys = list(json.loads((tmp_path / "manifest.json").read_text(encoding="utf-8")))
     trace = compare.simulate(case)
     shown = [name for name in COLUMNS if name not in (*OF_FRAMES, *OF_TENDONS)]
-    assert list(trace.to_frame().columns) == shown  # of all that the page shows
+    assert list(trace.to_frame().columns) == shown  # all columns of the page
     assert list(trace.passes.columns) == list(PASS_COLUMNS)
     assert len(written) > 4
     assert len(keys) > 8
@@ -207,7 +207,7 @@ def test_every_comparison_file_and_manifest_key_is_documented(tmp_path: Path) ->
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebooks_are_short_ask_a_question_and_keep_small_outputs(notebook: Path) -> None:
-    assert int(notebook.name[:2]) == 1 + NOTEBOOKS.index(notebook)  # in the order of reading
+    assert int(notebook.name[:2]) == 1 + NOTEBOOKS.index(notebook)  # order of reading
     cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
     first = "".join(cells[0]["source"])
     assert first.startswith("# ")

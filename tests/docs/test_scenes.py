@@ -31,7 +31,7 @@ TURN = 203.909800  # [deg] tests/reference/finite_release.csv: h/b = 2, rolling 
 TURN_ERROR = 0.01  # [deg]
 # energy that contact takes in a pass, at these steps
 TILT_ERROR = 1e-4
-# in single precision a pose of 2 m is off by 2e-7 m, which contact takes for a gap
+# single precision: a pose of 2 m is off by 2e-7 m, seen by contact as a gap
 SINGLE_TURN_ERROR, SINGLE_TILT_ERROR = 0.03, 1e-3
 # README: worst engine of each precision
 WORST = {"bullet_can": r"([\d.]+)°", "rapier_can": r"single precision\) ([\d.]+)°"}
@@ -60,7 +60,7 @@ def test_can_scene_matches_exact_turn_and_tilt(scene: ModuleType) -> None:
     turn, tilt = scene.next_largest_tilt()
     single = scene.__name__ == "rapier_can"
     assert abs(turn - TURN) < (SINGLE_TURN_ERROR if single else TURN_ERROR)
-    if scene.__name__ in WORST:  # the others are closer
+    if scene.__name__ in WORST:  # other scenes are closer
         assert is_stated(abs(turn - TURN), "default settings", WORST[scene.__name__])
     assert abs(tilt - 1.0) < (SINGLE_TILT_ERROR if single else TILT_ERROR)
 
@@ -69,7 +69,7 @@ def test_can_scene_matches_exact_turn_and_tilt(scene: ModuleType) -> None:
 @pytest.mark.parametrize("scene", ENGINES, indirect=True)
 def test_stated_tilt_loss_with_default_engine_settings_holds(scene: ModuleType) -> None:
     name = scene.__name__.removesuffix("_can")
-    friction = {"friction": 1.0} if name == "bullet" else {}  # as in the table: no setting of the engine
+    friction = {"friction": 1.0} if name == "bullet" else {}  # friction as in the table, no engine default
     _, tilt = getattr(importlib.import_module("defaults"), name)(**friction)
     engine = {"mujoco": "MuJoCo", "bullet": "PyBullet", "dart": "DART"}.get(name, name.capitalize())
     assert is_stated(100.0 * (1.0 - tilt), "default settings", rf"([\d.]+) % (?:of its tilt )?in {engine}")
@@ -103,7 +103,7 @@ def test_tendon_recentres_the_can_at_the_stated_time(monkeypatch: pytest.MonkeyP
     assert exact == pytest.approx(stated, abs=5e-5)
     assert scene.time_to_upright() == pytest.approx(stated, abs=3e-4)
     assert scene.time_to_upright(scene.SCENE) == math.inf
-    # straight from the anchor to the top it stretches less
+    # stretch is smaller along the straight line from anchor to top
     straight = scene.scene().replace('<site site="base"/>', "")
     assert scene.time_to_upright(straight) > stated + 3e-3
     s, c = math.sin(scene.TILT), math.cos(scene.TILT)
@@ -191,4 +191,4 @@ def test_plain_mujoco_in_a_recess_follows_the_recess_equations(monkeypatch: pyte
     # measured 9e-5 alpha, 5e-3 b, 0.27 deg
     assert np.all(np.array(scene.differences()) < (2e-4, 1e-2, 0.6))
     monkeypatch.setattr(scene, "SCENE", re.sub("<actuator>.*</actuator>", "", scene.SCENE))
-    assert scene.differences()[0] > 0.1  # without its guide it rolls out
+    assert scene.differences()[0] > 0.1  # roll-out without the guide

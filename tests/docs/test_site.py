@@ -40,8 +40,8 @@ class Page(HTMLParser):
         super().__init__()
         self.links: list[str] = []
         self.anchors: set[str] = set()
-        self.said: list[tuple[str, bool]] = []  # text, and whether it is a link to the glossary
-        self.terms: list[str] = []  # what the page defines
+        self.said: list[tuple[str, bool]] = []  # texts, and whether they link to the glossary
+        self.terms: list[str] = []  # terms defined by the page
         self._open: list[tuple[str, str]] = []
         self.feed(path.read_text(encoding="utf-8"))
 
@@ -69,7 +69,7 @@ class Page(HTMLParser):
 
 def names() -> list[str]:
     pages = [path.relative_to(BUILT).as_posix() for path in sorted(BUILT.rglob("*.html"))]
-    return [name for name in pages if not name.startswith("_")]  # what the theme brings is no page
+    return [name for name in pages if not name.startswith("_")]  # without pages of the theme
 
 
 @pytest.fixture(scope="module")
@@ -108,12 +108,12 @@ def test_formula_font_has_every_character_used() -> None:
             lacking |= {
                 f"{name}: {each}" for each in letters if not each.isspace() and ord(each) not in known
             }
-            assert 'mathvariant="bold' not in formula  # which browsers leave out
+            assert 'mathvariant="bold' not in formula  # not drawn by browsers
     assert lacking == set()
 
 
 def test_first_use_of_each_term_links_to_the_glossary(pages: dict[str, Page]) -> None:
-    terms = set(pages["glossary.html"].terms) - {"pass", "guide", "record"}  # words of other senses, too
+    terms = set(pages["glossary.html"].terms) - {"pass", "guide", "record"}  # words with other senses, too
     assert len(terms) > 25
     loose = []
     for name, page in pages.items():

@@ -70,7 +70,7 @@ def options_of(records: Path, **names: str) -> list[str]:
             {"overturning": "not tested", "intensity": "not tested"},
         ),
         ({"x": "x", "y": "y"}, ["--support", "recess", "--friction", "0.1"], {"friction": "not satisfied"}),
-        # of six records one is more than 95 %: a spike of one sample at a near pass counts
+        # one of six exceeds 5 %: a one-sample spike at a near pass counts
         ({"x": "x", "y": "y"}, ["--support", "flat", "--friction", "3"], {"friction": "satisfied"}),
         ({}, ["--release-tilt-deg", "5", "--rolling-rate", "0.5"], {"overturning": "satisfied"}),
     ],
@@ -84,7 +84,7 @@ def test_advice_page_is_drawn_for_every_kind_of_case(names, more, expected, reco
     grades = loaded.grades
     assert {topic: grades[topic] for topic in expected} == expected
     assert loaded.moves == bool(grades) == bool(expected)
-    assert text.count("\n## ") == 1  # the details
+    assert text.count("\n## ") == 1  # section of details
     for cells in (text, printed):
         assert not {"nan", "inf", "None"} & set(cells.replace("|", " ").split())
     html = (tmp_path / "advice.html").read_text()
@@ -94,7 +94,7 @@ def test_advice_page_is_drawn_for_every_kind_of_case(names, more, expected, reco
     tables = DATA | ({"slides.parquet"} if loaded.slides else set())
     written = {path.name for path in tmp_path.iterdir()}
     assert written == tables | {"advice.html", "advice.json", "manifest.json"}
-    if more == ["--scale", "2"]:  # twice: with a vertical component, and in one plane
+    if more == ["--scale", "2"]:  # twice: with vertical component, and in one plane
         assert again.html() == html  # with all that the pictures show
 
 
@@ -127,7 +127,7 @@ def test_details_are_printed_only_with_the_option(advice):
 def test_printed_numbers_equal_the_group_table(advice):
     given, *groups = page_of(advice).values["numbers"]
     alpha = np.degrees(advice.cylinder.alpha)
-    # its digits follow the scatter of its copies
+    # digits follow the scatter of copies
     assert float(given["tilt"]) == pytest.approx(alpha * advice.peak, rel=0.05)
     assert float(given["top"]) == pytest.approx(advice.top(advice.peak), rel=0.05)
     assert len(groups) == len(advice.groups)
@@ -143,7 +143,7 @@ def test_printed_numbers_equal_the_group_table(advice):
         peaks = advice.members[advice.members["group"] == group["group"]]["peak_tilt"]
         assert (peaks <= group["peak_tilt_95"] * (1.0 + 1e-12)).sum() >= rank >= 0.95 * count
     _, *rows = page_of(with_table(advice, "groups", peak_tilt_95=np.inf)).values["numbers"]
-    # a count beside it would read as the count of those that overturn
+    # a count would read as the overturning count
     assert {(row["covered"], row["tilt"], row["top"]) for row in rows} == {("", "no limit", "no limit")}
 
 
@@ -326,7 +326,7 @@ def test_picture_shows_tilts_that_a_tendon_recentres(
     tendon = None if balance is None else {"balance_tilt": balance}
     tied = changed(with_table(advice, "scales", peak_tilt=1.5 * advice.cylinder.alpha), tendon=tendon)
     (picture,) = pictures(tied)
-    peaks, details = parts_of(picture)  # beside the grades, and in the details of a page
+    peaks, details = parts_of(picture)  # panel beside the grades, and panels of details
     assert [*peaks.panels[0].layers, *details.panels] == [*picture.panels[0].layers, *picture.panels[1:]]
     panel = next(each for each in details.panels if each.title.startswith("Other scales"))
     tilts = np.concatenate([layer.y for layer in panel.layers if isinstance(layer, Line)])

@@ -35,7 +35,7 @@ FILES = {
     "mine.suite.toml": SUITE,
     "taken": "",
 }
-# of every command that runs a method of its own choice
+# options of all commands that choose their methods
 METHODS = {
     "--time-step fast": 'must be a number [s], "auto" or "extrapolated", got \'fast\'',
     "--time-step 0.5": "time_step must be at most 0.001 s for contact at this size",

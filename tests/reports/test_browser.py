@@ -19,7 +19,7 @@ from rockwobble.reports.registry import KINDS
 
 pytestmark = [pytest.mark.slow, pytest.mark.checkout]
 
-# of a player: moved, it must say where it is
+# player: reports its position after a move
 PLAYER = """
 window.lookFurther = (faults) => {
   const player = document.querySelector(".player");
@@ -30,7 +30,7 @@ window.lookFurther = (faults) => {
   if (!clock.textContent.startsWith("1.50 s of")) faults.push(`the player says ${clock.textContent}`);
 };
 """
-# of a suite: another case is chosen and drawn
+# suite: another case is chosen and drawn
 CHOOSER = """
 window.addEventListener("load", () => setTimeout(() => document.getElementById("next").click(), 300));
 """

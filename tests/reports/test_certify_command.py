@@ -61,7 +61,7 @@ def test_verify_prints_one_verdict_with_its_exit_code(
     assert verdict["values"]["name_term"]["value"]
     assert versions["key"] == "certificate.same_versions"
     older = json.loads(certificate.read_text())
-    older["versions"] |= {"numpy": "1.0", "mujoco": "0.1"}  # an engine that it is not of
+    older["versions"] |= {"numpy": "1.0", "mujoco": "0.1"}  # unrelated engine
     (tmp_path / "older.json").write_text(json.dumps(older))
     assert run("verify", str(tmp_path / "older.json")) == 0
     said = capsys.readouterr().out

@@ -58,7 +58,7 @@ def test_passing_groups_are_summarised_in_every_output(
     paths = [tmp_path / name for name in ("check.json", "check.xml", "check.md")]
     options = ["--json", str(paths[0]), "--junit", str(paths[1]), "--markdown", str(paths[2])]
     assert run(*FAST, *options) == 0
-    # one line a group, and the result
+    # one line per group, and the result
     lines = capsys.readouterr().out.splitlines()
     assert [line.split(":")[0] for line in lines[:-1]] == ["equations of motion", "rest and uplift"]
     stored = json.loads(paths[0].read_text())

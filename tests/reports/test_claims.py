@@ -141,7 +141,7 @@ def test_readme_run_time_of_the_reduced_model_holds() -> None:
 
     def seconds(compute: Callable[[], object]) -> float:
         taken = []
-        for _ in range(4):  # the first compiles
+        for _ in range(4):  # first call compiles
             begin = time.process_time()
             compute()
             taken.append(time.process_time() - begin)

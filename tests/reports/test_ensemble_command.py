@@ -64,7 +64,7 @@ def test_member_sizes_are_stated_as_a_range():
 
 
 def test_page_matches_golden_file():
-    # of ten the median is between the fifth and the sixth, of which 95 % exclude the largest two on each side
+    # median of ten lies between the fifth and sixth; 95 % exclude the largest two on each side
     is_golden(made_up())
 
 
@@ -85,7 +85,7 @@ def test_findings_state_the_verdict_and_the_numbers_of_each_main_pair():
     assert "ratio_detectable" not in pair
     assert numbers(made_up(), "different")["names"] == ("mujoco recess with recess model",)
     assert keys(made_up()) == {"different", "pair", "significant", "overturning_alike"}
-    # what is told apart may be equivalent, and what is not need not be
+    # significant differences may be equivalent, and others not
     assert keys(made_up(1.001)) == {"equivalent", "pair", "significant", "overturning_alike"}
 
 

@@ -17,7 +17,7 @@ call = partial(command_line, "explore", "--no-open")
 MOST = 400_000  # bytes with El Centro
 PEER = "example\nof a record\nACCELERATION IN G\nNPTS= 5, DT= .01 SEC\n 0.0 0.1 0.3 -.2 0.0\n"
 
-# a worker that answers in the page itself: the browser's own time, which runs ahead, waits for no other
+# worker inside the page: virtual browser time does not wait for others
 WORKER = """
 class Worker {
   constructor(address) {
@@ -201,7 +201,7 @@ def test_page_written_with_other_options_is_not_overwritten(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call() == 0
-    assert call() == 0  # the same again
+    assert call() == 0  # repeated command
     assert call("--scale", "2") == 2
     assert "--overwrite" in capsys.readouterr().err
     assert call("--scale", "2", "--overwrite") == 0

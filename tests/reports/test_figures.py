@@ -210,7 +210,7 @@ def test_the_contact_path_is_joined_along_the_rim_only_when_flat():
     centres = trace.contact_point - pier.base_radius * np.hstack([np.cos(angle), np.sin(angle)])
     path = np.column_stack([picture.panels[1].layers[2].x, picture.panels[1].layers[2].y])
     path, centres = (places[np.isfinite(places[:, 0])] for places in (path, centres))
-    for points in (path, 0.5 * (path[1:] + path[:-1])):  # no chord leaves the rim in any of its places
+    for points in (path, 0.5 * (path[1:] + path[:-1])):  # no chord leaves the rim
         apart = np.hypot(*(points[:, None] - centres[::20]).T)
         assert np.abs(apart - pier.base_radius).min(axis=0).max() < 0.05 * pier.base_radius
 

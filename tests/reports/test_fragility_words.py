@@ -140,7 +140,7 @@ def test_each_reason_for_no_curve_lists_its_limits_once(cylinders):
             name = f"{row['method']} of {row['cylinder']}" if len(cylinders) > 1 else row["method"]
             if (kind, row["limit"]) != ("one motion", "overturned"):  # of which the median is bounded
                 assert any(row["limit"] in part and name in part for part in names)
-    # a step has no dispersion that is known, nor has a difference from it
+    # steps and their differences have unknown dispersion
     steps = {(row["cylinder"], row["method"]) for row in values["fallen"] if row["kind"] == "separated"}
     assert steps
     for row in values["fallen"]:

@@ -28,7 +28,7 @@ def test_every_writing_command_has_an_overwrite_option() -> None:
 
 GRID = ("sweep", "--semidiagonal", "1,2", "--scale", "1", "--workers", "1")
 SIMULATE = ("simulate", *SHORT)
-# each with options of another plan
+# options of another plan
 PLANS = {each[0]: (each, (*each, "--tan-alpha", "0.3")) for each in (GRID, SIMULATE)}
 
 

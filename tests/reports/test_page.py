@@ -86,7 +86,7 @@ def test_each_diagnostic_detail_has_words_and_unknown_ones_are_refused(code, rea
         for each in (reason, next(each for each in REASONS[code] if each != reason))
     )
     assert words
-    assert words != others  # each is said in its own words
+    assert words != others  # distinct words
     with pytest.raises(ValueError, match=f"detail must be one of .*{reason}.*, got 'because'"):
         Diagnostic(code=code, detail="because")
 
@@ -141,7 +141,7 @@ def test_the_table_has_the_numbers_and_codes_of_each_external_trajectory() -> No
     engine = table(support="recess", run="mujoco recess")
     (line,) = external_rows(pd.concat([engine, wrong]))
     shown = numbers | {"run": "table", "uplift": 0.004, "differs_in": "azimuth; path", "direction": None}
-    # of the direction nothing is known
+    # direction unknown
     shown |= {"likely_mistake": "axes: turned_back", "direction_uncertainty": None}
     assert {name: line[name] for name in shown} == shown
     (other,) = external_rows(table(uplift_direction_uncertainty=4.0))

@@ -150,7 +150,7 @@ def test_tables_in_a_terminal_break_no_word(seed: int) -> None:
         words = Counter(" ".join([*cells, *(column.heading for column in shown)]).split())
         assert words - Counter(printed.replace("─", " ").split()) == Counter()
         assert max(map(len, printed.splitlines())) <= width
-        # what is left out is what is wide, as long as there is such a column
+        # wide columns are omitted first
         gone = [column for column in table.columns if column not in shown]
         assert all(column.wide for column in gone) or not any(column.wide for column in shown)
         assert bool(gone) == ("on the page" in printed)

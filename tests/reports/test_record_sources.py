@@ -15,7 +15,7 @@ from rockwobble.reports.pages.cases import source_lines
 
 STEP, COUNT = 0.01, 60
 LABELS = ("Ost", "Nord")
-# a suite says of its files what read_record takes
+# suite option equal to a read_record argument
 KEYS = {
     "record_columns": ("columns", "1,3,2"),
     "record_step": ("time_step", 0.01),

@@ -70,14 +70,14 @@ def test_sweep_page_matches_golden_file(swept):
 
 def test_run_page_states_only_quantities_of_its_method():
     of_model = sizes(run_of(rw.Case(PIER, rw.el_centro_1940(), duration=15.0), rw.Run(None, "recess")))
-    # the swing that is followed past the end makes no demand that is known
+    # the swing after the end has no known demand
     assert of_model["friction"]["reason"] == of_model["moment"]["reason"] == "until_the_end"
     assert {"end", "uplift", "passes", "closest", "computing_time"} < set(of_model)
     assert not {"time_step", "twist", "wall_contact"} & set(of_model)
     engine = sizes(run_of(RELEASE, rw.Run("mujoco", "recess", 1e-3)))
     assert engine["time_step"]["duration"] == 1e-3
     assert {"twist", "displacement_residual"} < set(engine)
-    # a release leans from the start
+    # release with an initial tilt
     assert not {"uplift", "wall_contact", "friction", "moment", "closest"} & set(engine)
 
 
@@ -108,7 +108,7 @@ def test_overturning_after_the_end_states_both_times():
 def test_failed_and_overturned_runs_are_stated():
     fallen = run_of(rw.Case(PIER, rw.el_centro_1940().scaled(5.0)), rw.Run(None, "recess"))
     assert "run.falls" in keys(fallen)
-    # what is asked until it falls, not in the fall
+    # demand up to the overturning time
     assert sizes(fallen)["friction"]["reason"] == "until_it_falls"
     assert "run.failed" in keys(run_of(RELEASE, rw.Run("mujoco", "recess", contact_damping_ratio=0.01)))
 

@@ -43,7 +43,7 @@ def test_spectrum_command_prints_writes_and_redraws_its_results(tmp_path: Path, 
     coarse = ["--search-step", "0.4", "--probes", "3"]
     assert call(*SMALL, *coarse, "--tan-alpha", "0.2", "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "b = " not in printed  # of which of the sizes?
+    assert "b = " not in printed  # no b, as sizes differ
     written = {"spectrum.html", "spectrum.json", "manifest.json"} | {f"{name}.parquet" for name in TABLES}
     assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt", "finished"}
     loaded = OverturningSpectrum.load(tmp_path).maps
@@ -159,7 +159,7 @@ def test_gaps_are_counted_with_the_range_of_the_widest(spectrum):
 def test_search_finding_states_missed_windows_and_sensitive_cells(spectrum):
     none = dataclasses.replace(spectrum, below={name: np.zeros(12) for name in SERIES})
     count = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
-    values = numbers(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
+    values = numbers(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a grid step of 1
     # 0 of 5 draws: below 1 - 0.05^(1/5)
     assert values["probes"]["share"] == pytest.approx(1.0 - 0.05**0.2)
     assert values["unseen"] == {"count": 0, "count_all": count}
@@ -196,6 +196,6 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     maps = tilt_maps(0.1, motion, plan)
     assert not maps.peak_tilt[SERIES[1 + still]].any()
     picture = picture_of(maps)
-    assert still or svg(picture)  # the planes differ in their place alone
-    # the planar run is the 3D run
+    assert still or svg(picture)  # planes differ by their position only
+    # planar run equals the 3D run
     assert numbers(maps)["overturned"]["share_unconservative"] == 0.0

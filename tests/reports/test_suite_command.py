@@ -65,7 +65,7 @@ def test_suite_is_echoed_run_summarised_and_written(folder, no_engines, capsys):
     summary = pd.read_csv(folder / "results" / "summary.csv")
     assert summary["case"].nunique() == 4
     assert (folder / "results" / "report.html").read_text().count("<template id=") == 4
-    # an engine that has lost the case from the beginning
+    # engine that diverges from the beginning
     no_engines(tilt=np.full(201, 0.3))
     assert call("compare", "mine.suite.toml", "--engine", "mujoco", "--support", "recess") == 0
     out = capsys.readouterr().out

@@ -52,7 +52,7 @@ def test_tendon_ratios_and_steel_data_give_equal_tendons(tmp_path: Path) -> None
     assert f"{tied}, elastic without limit" in page
     largest = traces[0].peak_tendon_force
     assert f"largest {largest:.3g} weights of a column" in page
-    # the answer is an advice, which takes a tendon
+    # output of advise, which accepts a tendon
     answer = json.loads((tmp_path / "drawn" / "manifest.json").read_text())["about"]["single_trace"]["answer"]
     assert answer.startswith("rockwobble advise")
     assert "--tendon-force" in answer
@@ -94,7 +94,7 @@ def test_case_with_a_tendon_skips_flat_ground_by_default() -> None:
     tied = dataclasses.replace(case, tendon=rw.Tendon(prestress=0.5))
     assert {run.support for run in default_runs(cases=[case])} == {"recess", "flat"}
     assert {run.support for run in default_runs(cases=[case, tied])} == {"recess"}
-    # what is named runs or is refused, and nothing else takes its place
+    # named supports run or are refused, without replacement
     named = default_runs(["mujoco", "exudyn"], cases=[tied])
     assert named == (rw.Run("mujoco", "recess"), rw.Run("exudyn", "flat"))
     with pytest.raises(ValueError, match="a tendon is part of the models in the recess"):
@@ -105,7 +105,7 @@ SIZE = ["--diameter", "1.6", "--height", "9"]
 BODY = rw.Cylinder.from_dimensions(base_radius=0.8, height=9.0)
 BY_SIZE = ["--semidiagonal", repr(BODY.semidiagonal), "--tan-alpha", repr(BODY.tan_alpha)]
 FRAGILITY = "--synthetic 2 --model recess --levels 2,4 --resamples 2 --limit overturned"
-# a study of one body: its table, and its options
+# study of one body: its table and options
 STUDIES = {
     "fragility": ("runs", [*SIZE, *FRAGILITY.split(), "--limit", "tendon yields"]),
     "spectrum": ("spectrum", [*BY_SIZE, "--intensity", "1,2,4", "--search-step", "0.5", "--probes", "0"]),
@@ -124,7 +124,7 @@ def test_study_of_one_body_accepts_a_tendon_from_steel_data(command: str, tmp_pa
     drawn = rw.Tendon.from_steel(**DRAWN, yield_force=900e3)
     ratios = ["--tendon-prestress", repr(drawn.prestress), "--tendon-stiffness", repr(drawn.stiffness)]
     steel = [*STEEL]
-    if command in ("fragility", "spectrum"):  # whose plans state where it yields
+    if command in ("fragility", "spectrum"):  # plans state the yield force
         steel += ["--tendon-yield-force", "900e3"]
         ratios += ["--tendon-yield", repr(drawn.yield_force)]
     peaks, (table, stated) = [], STUDIES[command]
@@ -133,4 +133,4 @@ def test_study_of_one_body_accepts_a_tendon_from_steel_data(command: str, tmp_pa
         assert call(command, *stated, *options, "--out", str(out)) == 0
         peaks.append(pd.read_parquet(out / f"{table}.parquet")["peak_tilt"].to_numpy(float))
     assert peaks[0].max() > 0.0
-    assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)  # the base radius is known to rounding
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)  # base radius known to rounding

@@ -94,7 +94,7 @@ def test_stored_tables_suffice_to_redraw_the_pages(
     before = stored_page("validity", tmp_path).markdown()
     shaken = stored.tables["peaks"].assign(least_normal=-1.0)
     dataclasses.replace(stored, tables={**stored.tables, "peaks": shaken}).save(tmp_path)
-    # drawn to the end once, above
+    # drawn completely once, above
     with monkeypatch.context() as patch:
         patch.setattr(Page, "html", lambda *_, **__: "")
         patch.setattr("rockwobble.reports.figures.svg.svg", lambda *_, **__: b"")

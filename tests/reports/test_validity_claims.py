@@ -110,7 +110,7 @@ def test_bounds_rounded_for_text_hold_and_are_close(form: str, sign: float) -> N
             return float(text.removesuffix(" %")) / (100.0 if text.endswith("%") else 1.0)
 
         most, least = read("most "), read("least ")
-        rounding = 1e-11 * size  # of digits that do not count
+        rounding = 1e-11 * size  # insignificant digits
         assert least - rounding <= value <= most + rounding
         near = [math.isclose(end, read(""), rel_tol=1e-9, abs_tol=1e-15) for end in (least, most)]
         assert any(near), value

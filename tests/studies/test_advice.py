@@ -77,7 +77,7 @@ from rockwobble.studies.spectrum.parts import intensity_unit, uplift_factor
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RECESS = Run(None, "recess")
-SAME_RUN = 1e-9  # of two runs that differ in what comes after their end
+SAME_RUN = 1e-9  # relative difference of two runs that differ after their end only
 COUNTED = 1e-6  # a growth that rounding moves, against uplifts a second apart
 SHORT = GroundMotion(el_centro_1940().acceleration[:1000], 0.01, "short")
 
@@ -255,7 +255,7 @@ def test_overall_grade_is_the_worst_and_untested_topics_do_not_improve_it():
     assert overall(["satisfied", "not satisfied", "caution", "not tested"]) == "not satisfied"
     assert overall(["not tested", "caution"]) == "caution"
     assert overall(["satisfied", "not tested"]) == overall([]) == "not tested"
-    # a group whose members all failed hides no other
+    # a failed group does not hide others
     assert overall(map(grade_chance, [math.nan, 0.5])) == "not satisfied"
 
 
@@ -359,7 +359,7 @@ def test_simultaneous_forces_are_within_the_demands(beyond, support):
     acts_within_its_rows(demands)
     shear = demands.set_index("demand").loc["shear"]
     assert (shear["value"], shear["covered"]) == (0.119, 19)  # independent of simultaneous actions
-    held = beyond == (0.119, 1.1, 0.05) and support == "flat"  # where nothing is said of a moment
+    held = beyond == (0.119, 1.1, 0.05) and support == "flat"  # no moment in these cases
     expected = beyond if held else (0.117, 1.1, 0.005)
     assert tuple(shear[[f"with_{part}" for part in ("shear", "force", "moment")]]) == expected
 
@@ -384,7 +384,7 @@ def test_demand_is_the_maximum_over_groups_and_weaker_shaking(advice):
     assert (demands["peak"][["shear", "force"]] > demands["value"][["shear", "force"]]).all()
     b = PIER.base_radius
     assert demands["per_tonne"]["moment"] == pytest.approx(9.81 * b * demands["value"]["moment"])  # [kNm]
-    # a wall is sized for what stands, and no higher than the point of the rim that stands out farthest
+    # walls are sized for standing cylinders, up to the outermost point of the rim
     falls = any((group["outcome"] == "overturned").mean() > 0.05 for _, group in sets)
     assert (demands["value"][["wall_height", "clearance"]].isna() == falls).all()
     standing = demand_table(rows[rows["outcome"] == "stands"], PIER, gravity=9.81, support="recess")
@@ -392,7 +392,7 @@ def test_demand_is_the_maximum_over_groups_and_weaker_shaking(advice):
     theta = wall["tilt"] * PIER.alpha
     assert wall["wall_height"] == pytest.approx(0.5 * b * theta, rel=theta)
     assert wall["clearance"] == pytest.approx(0.5 * b * theta**2, rel=theta)
-    # together they are less than one after the other
+    # simultaneous actions are smaller than separate maxima
     assert demands["value"]["shear_and_wall"] <= demands["value"]["shear"] + demands["value"]["moment"]
     acts_within_its_rows(advice.demands)
     flat = demand_table(rows, PIER, gravity=9.81, support="flat")
@@ -421,10 +421,10 @@ def test_demands_do_not_decrease_with_record_scale(body, motion, monkeypatch):
         demands = dict(zip(advice["demand"], advice["value"], strict=True))
         acts_within_its_rows(advice)
         for name, value in largest.items():
-            if name not in ("wall_height", "clearance"):  # none where too many fall
-                assert demands[name] >= 0.9 * value, (name, scale)  # a tenth is chance
+            if name not in ("wall_height", "clearance"):  # no value if too many overturn
+                assert demands[name] >= 0.9 * value, (name, scale)  # 10 % scatter allowed
         largest |= {name: value for name, value in demands.items() if value > 0.0}
-    assert largest["tilt"] >= PASSED  # it overturns at the end
+    assert largest["tilt"] >= PASSED  # overturns at the end
     assert largest["moment"] > 0.0
 
 
@@ -483,7 +483,7 @@ def test_a_frame_has_demands_at_base_and_top_in_kilonewtons(no_records):
     own, moving = demands_of(trace), trace.tilt > 0.0
     needed = np.maximum(trace.friction_needed, trace.top_friction_needed)[moving]
     assert own["slip"] == pytest.approx(np.mean(needed > 0.15), abs=2.0 / moving.sum())
-    assert own["top_friction"] > own["friction"]  # a light slab asks for more friction than the ground
+    assert own["top_friction"] > own["friction"]  # a light slab needs more friction than the ground
     ends = {
         "contact_force": trace.top_contact_force,
         "top_contact_force": trace.contact_force,
@@ -492,7 +492,7 @@ def test_a_frame_has_demands_at_base_and_top_in_kilonewtons(no_records):
     }
     names = ("case", "outcome", "time", "tilt", "restraining_moment", "open_base", "peak_tilt")
     swapped = demands_of(SimpleNamespace(**{name: getattr(trace, name) for name in names}, **ends))
-    # whichever end asks for more
+    # maximum over both ends
     assert (swapped["slip"], swapped["lost"]) == (own["slip"], own["lost"])
     assert swapped["friction"] == own["top_friction"]
 
@@ -600,7 +600,7 @@ def test_topics_without_runs_get_no_grade():
     grades = advice.grades
     for topic in ("overturning", "intensity", "engine"):
         assert grades[topic] == "not tested"
-    # it lifts without a tilt that opens its base: nothing is asked of ground and recess
+    # base lifts without opening: no demands on ground and recess
     assert grades["contact"] == "not tested"
     assert advice.response["tolerance"] == pytest.approx(0.1 * advice.peak)
 
@@ -609,7 +609,7 @@ def test_ratios_of_overturned_copies_are_counts():
     peaks = np.linspace(0.1, 0.3, 20)
     fell, stands = np.arange(20) < 15, np.zeros(20, dtype=bool)
     most = ratios_of(Pairs(peaks, peaks, stands, fell).contrast())
-    assert math.isnan(most["ratio"])  # 0: fifteen overturn there alone
+    assert math.isnan(most["ratio"])  # 0: fifteen overturn in that group only
     assert [most[name] for name in ("members", "count", "higher", "lower")] == [20, 20, 0, 15]
     assert (most["overturned"], most["against_overturned"]) == (0, 15)
     both = ratios_of(Pairs(2.0 * peaks, peaks, fell, fell).contrast())
@@ -665,7 +665,7 @@ def test_single_run_and_advice_report_equal_divergence_time(no_records):
     assert single["perturbation"] == advised.facts["perturbation"] == 0.01
     assert single["copies_part"] == pytest.approx(advised.divergence_time)
     assert single["copies_part"] < advised.response["peak_time"]
-    # without passes nothing is magnified
+    # no amplification without passes
     swing = Case(slender, initial=InitialState(0.5 * slender.alpha, rolling_rate=1.0), duration=5.0)
     assert single_run(swing, RECESS).facts["single_trace"]["copies_part"] == math.inf
 
@@ -753,7 +753,7 @@ def test_advice_states_uplift_stiffness_and_balance_of_a_tendon(no_records: None
     rows = tied.demands.set_index("demand")
     assert rows["value"]["tendon"] > 0.6
     assert tied.grades["tendon"] == "not satisfied"
-    # it yields at 0.25 alpha in most runs, which say nothing else; without a yield force they do
+    # most runs yield at 0.25 alpha and have no further result; without yield force they have
     assert tied.grades["overturning"] == "not tested"
     assert tied.yielded > 5
     assert rows["value"].drop("tendon").isna().all()
@@ -762,7 +762,7 @@ def test_advice_states_uplift_stiffness_and_balance_of_a_tendon(no_records: None
     )
     assert (elastic.grades["overturning"], elastic.yielded) != ("not tested", tied.yielded)
     assert "tendon" not in plain.grades
-    # the scale from which is searched follows the raised uplift
+    # search scale start follows the raised uplift
     starts = tied.lowest["start"].to_numpy() / plain.lowest["start"].to_numpy()
     assert starts == pytest.approx(1.5, rel=1e-12)
     with pytest.raises(ValueError, match="is for support 'recess', got 'flat'"):

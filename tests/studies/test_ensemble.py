@@ -87,12 +87,12 @@ def test_failed_runs_are_counted_named_and_excluded_from_members(monkeypatch):
     assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
     assert methods.loc["flat-ground model", "failed_members"] == "release #2"
     assert len(study.members) == 14
-    # of six members that do not differ; what failed has no part in the counts and quantiles of its method
+    # six equal members; failed runs are excluded from counts and quantiles
     pairs = ["count", "compared", "ratio", "masked"]
     assert study.contrasts.loc[0, pairs].tolist() == [6, 6, 1.0, "release #2"]
     assert methods.loc["flat-ground model", ["runs", "uplifted", "overturned"]].tolist() == [7, 6, 0]
     assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
-    # the last of four is how far it came before it failed: no peak
+    # fourth member failed on the way: no peak
     members = study.members[study.members["member"].str[-1].astype(int) < 5].reset_index(drop=True)
     members.loc[members["method"] == "recess model", "outcome"] = ["overturned"] * 2 + ["stands", "failed"]
     members.loc[members["member"] == "release #2", "outcome"] = "overturned"
@@ -106,7 +106,7 @@ def test_failed_runs_are_counted_named_and_excluded_from_members(monkeypatch):
 
 def test_member_outcome_and_peak_equal_its_single_run(monkeypatch):
     cases = [dataclasses.replace(CASE, name=name) for name in "abcdef"]
-    # past its balance at the end: what that is called is the matter of who ran it
+    # past its balance at the end: outcome depends on the method
     runs = {
         "recess model": made_up(Job(case=cases[0], run=RECESS), 1.5 * PIER.alpha),
         "flat-ground model": made_up(Job(case=cases[0], run=RECESS), 0.5 * math.pi, "overturned"),

@@ -43,7 +43,7 @@ def test_every_method_runs_under_the_same_motions(study):
     assert len(study.points) == 12 * COUNT
     for _, part in study.points.groupby("step"):
         assert set(part["peak_acceleration"]) == {LEVELS[int(part["step"].iloc[0])]}
-    # a run is the one that anybody can make: here at a level at which it rocks in each plane and stands
+    # reproducible by a single run, here at a level that rocks in each plane and stands
     point = study.points[study.points["step"] == 3].iloc[0]
     motion = next(each for each in MOTIONS if each.name == point["motion"])
     models = {
@@ -212,7 +212,7 @@ def test_bounds_contain_the_curve_had_failed_runs_ended(study: Fragility, fate: 
     assert fit["failed"] == len(lost)
     assert fit["median_if_exceeded"] < whole["median"] * (1 + 1e-9)
     assert fit["median_if_not"] > whole["median"] * (1 - 1e-9)
-    # the fate of the lost runs is the one that is right
+    # outcome of the lost runs is the true one
     right = "median_if_exceeded" if fate else "median_if_not"
     assert fit[right] == pytest.approx(whole["median"], rel=1e-9)
     before = of(study.contrasts, method=other, against=method)
@@ -236,7 +236,7 @@ def test_most_efficient_measure_has_the_least_dispersion(study):
     assert best["dispersion"] == table["dispersion"].min()
     assert best["over_best"] == 1.0
     assert np.isnan(best["over_best_low"])
-    # of one cylinder p and g tan(alpha) are the same for all: the levels' own measure, fitted both ways
+    # with one cylinder p and g tan(alpha) are constant: levels' measure, fitted both ways
     own = table[table["measure"] == "peak_acceleration"].iloc[0]
     fit = study.fits[(study.fits["method"] == "recess model") & (study.fits["limit"] == "overturned")].iloc[0]
     assert own["dispersion"] == pytest.approx(fit["dispersion"], rel=1e-9)

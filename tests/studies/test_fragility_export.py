@@ -95,7 +95,7 @@ def test_nrml_export_reproduces_the_tables(fitted: bool, all_limits: Fragility) 
     assert all(re.fullmatch(r"[\w:-]+", label) for label, _ in poes)
     for (label, ls), poe in poes.items():
         right = expected(table, label.split(":")[0], LIMITS[ls], curve=fitted)
-        inside = AT > 0.2 if fitted else AT > 0.0  # 0 below uplift by the file, which no curve knows
+        inside = AT > 0.2 if fitted else AT > 0.0  # 0 below uplift in the file, unlike the curve
         assert poe[inside] == pytest.approx(right[inside], abs=1e-7)  # nine digits of the parameters
 
 

@@ -98,7 +98,7 @@ def test_a_likelihood_without_maximum_is_reported():
     name, centre, spread = kind_of([0.0, 0.0, 10.0, 10.0, 10.0])
     assert (name, spread) == (SEPARATED, 0.0)
     assert centre == pytest.approx(math.log(math.sqrt(1.5 * 2.0)))
-    # one mixed level between none and all: the likelihood grows towards a step at it
+    # one mixed level between none and all: likelihood grows towards a step there
     name, centre, spread = kind_of([0.0, 0.0, 3.0, 10.0, 10.0])
     assert (name, centre, spread) == (SEPARATED, math.log(2.0), 0.0)
     assert kind_of([10.0, 10.0, 10.0, 0.0, 0.0])[0] == FALLING
@@ -246,7 +246,7 @@ def contrast(first: tuple[int, ...], second: tuple[int, ...]) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("first", "second", "verdict"),
     [
-        ((0, 5, 12), (0, 7, 12), "undecided"),  # both medians anywhere about 4, and not the same
+        ((0, 5, 12), (0, 7, 12), "undecided"),  # both medians anywhere about 4, possibly different
         ((0, 12, 12), (0, 12, 12), "undecided"),  # between 2 and 4 each
         ((0, 0, 0), (0, 0, 3), "undecided"),  # above 16 each
         ((12, 12, 12), (7, 12, 12), "undecided"),  # below 2 each
@@ -292,7 +292,7 @@ def test_medians_outside_the_levels_run_are_bounds_not_numbers(seed: int) -> Non
     if math.isinf(median):
         edge = levels[-1] if median > 0.0 else levels[0]
         assert (low, high) == ((edge, math.inf) if median > 0.0 else (-math.inf, edge))
-    if KINDS[curve.kinds[0]] in (EXTRAPOLATED, ONE_MOTION):  # no resample tells more than the motions do
+    if KINDS[curve.kinds[0]] in (EXTRAPOLATED, ONE_MOTION):  # resamples cannot resolve more than the motions
         edge = levels[-1] if median > 0.0 else levels[0]
         ends, inner = (many.high, many.low) if median > 0.0 else (-many.low, -many.high)
         assert (np.isnan(ends) | (ends == math.inf)).all()  # NaN counts as anything
@@ -327,5 +327,5 @@ def test_failed_run_bounds_beyond_the_levels_are_not_numbers(one: str) -> None:
     sample.y[1, 1:] = math.nan
     if_exceeded, if_not = _bounds_of_failed(sample)
     assert if_not == math.inf
-    # and if it exceeds, of one motion, or of two as a curve beyond the levels
+    # exceedance of one motion, or two as a curve beyond the levels
     assert if_exceeded == math.inf

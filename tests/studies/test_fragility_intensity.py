@@ -75,7 +75,7 @@ def test_measures_scale_with_the_motion_and_are_independent_of_sampling(name):
         np.interp(places, np.arange(len(motion.acceleration)), motion.acceleration[:, i]) for i in (0, 1)
     ]
     finer = GroundMotion(np.column_stack(halves), 0.5 * motion.time_step, "finer")
-    # the peak between two samples of a response
+    # response peak between two samples
     assert intensity(name, finer, PIER) == pytest.approx(whole, rel=5e-3)
 
 

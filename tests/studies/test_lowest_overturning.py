@@ -40,7 +40,7 @@ class Window:
     def __call__(self, levels: np.ndarray) -> np.ndarray:
         self.run += levels.tolist()
         away = np.abs(levels - self.centre) - 0.5 * self.width
-        # the tilt grows by its logarithm towards a window, because the balance is left exponentially
+        # tilt grows logarithmically towards a window, as the balance is left exponentially
         beside = 0.3 - 0.1 * np.log(np.maximum(np.abs(away), 1e-9) / self.flank)
         return np.where(away <= 0.0, FALL, ALPHA * np.clip(beside, 0.3, 0.999))
 
@@ -69,7 +69,7 @@ def test_coarse_grid_is_refined_and_never_exceeded():
     far = Window(9.0, 0.1, 0.02)
     assert math.isnan(search(far, 1.003, np.array([0.5, 3.5]), known=np.zeros(2)))
     run = np.sort(far.run)
-    assert run[0] > 1.003  # there it stands
+    assert run[0] > 1.003  # cylinder stands there
     assert np.diff([1.003, *run, 3.5]).max() <= 8.0 * STEP * (1.0 + SAME)
     far.run.clear()
     for start in (5.0, math.inf):
@@ -100,7 +100,7 @@ def test_parallel_searches_equal_separate_searches():
     assert all(0.0 <= low - edge <= STEP for low, edge in zip(results[:2], edges[:2], strict=True))
     assert math.isnan(results[2])
     for start, grid, known in ((1.0, [1.2345, 3.0], 1.2345), (2.0, [1.0, 2.0], 2.0)):
-        # a search ends at a known overturning
+        # known overturning ends a search
         assert search(lambda levels: np.where(levels >= 1.2345, FALL, 0.0), start, np.array(grid)) == known
 
 
@@ -140,7 +140,7 @@ def test_probes_go_down_until_none_overturns():
     def third(_: int, levels: np.ndarray) -> np.ndarray:
         return np.where(10.0 * levels % 1.0 < 1.0 / 3.0, FALL, 0.0)
 
-    # a third of what is below, down to the first window, whatever has been found before
+    # lowest third, down to the first window, regardless of earlier results
     for lowest in (2.0, math.nan):
         low, missed = run_searches([probe_below(1.0, 4.0, lowest, probes=500, seed=(1,))], third, workers=1)[
             0
@@ -149,7 +149,7 @@ def test_probes_go_down_until_none_overturns():
         assert missed > 100
     assert run_searches([probe_below(2.0, 4.0, 1.0, probes=9, seed=(0,))], third)[0] == (1.0, 0)
     assert run_searches([probe_below(1.0, 4.0, 2.0, probes=0, seed=(0,))], third)[0] == (2.0, 0)
-    # the share of which none in so many is seen
+    # share that this many draws miss
     assert (1.0 - gap_bound(500)) ** 500 == pytest.approx(0.05)
 
 

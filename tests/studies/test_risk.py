@@ -114,7 +114,7 @@ def test_truncated_hazard_bounds_the_frequency_of_the_whole_curve(y: list[float]
             assert 0.0 <= part["least"] <= part["total"] * (1.0 + 1e-12)
             assert part["total"] <= part["most"] * (1.0 + 1e-12)
             assert max(part["head"], part["tail"]) <= part["total"] * (1.0 + 1e-12)
-            if y == sorted(y):  # beyond a cut it stays what it was: a gap that lies there is not seen
+            if y == sorted(y):  # beyond a cut nothing changes: gaps there are invisible
                 assert part["least"] <= full["total"] * (1.0 + 1e-12)
             assert full["total"] <= part["most"] * (1.0 + 1e-12)
 
@@ -129,7 +129,7 @@ def test_tail_shares_of_both_ends_are_stated() -> None:
     assert (always["least"], always["most"]) == (pytest.approx(K0 * 0.2**-K), pytest.approx(K0 * 0.1**-K))
     above = single(power_law(low=0.7), levels, [0.0, 1.0, 1.0], 0.1)
     assert above["total"] == above["head"] == pytest.approx(K0 * 0.7**-K)
-    mean = mean_over(law, np.log([0.2]), np.log([0.5]))[0]  # the change lies between these two levels
+    mean = mean_over(law, np.log([0.2]), np.log([0.5]))[0]  # change lies between these two levels
     assert above["most"] == pytest.approx(mean)
     short = single(power_law(high=0.7), levels, [0.0, 0.0, 1.0], 0.1)
     assert short["tail"] == pytest.approx(math.log(0.7 / 0.5) / math.log(2.0) * K0 * 0.7**-K)
@@ -391,7 +391,7 @@ def test_analyses_needing_one_motion_set_refuse_motions_by_level() -> None:
 def test_record_scale_factors_above_5_are_flagged(
     fragility: rw.studies.Fragility, lowest: float, least: float, most: float
 ) -> None:
-    assert fragility.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # of synthetic motions none is
+    assert fragility.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # no factors for synthetic motions
     more = lowest / fragility.points["uplift_scale"].min()
     points = fragility.points.assign(synthetic=False, scale=more * fragility.points["scale"])
     points = points.assign(uplift_scale=more * points["uplift_scale"])

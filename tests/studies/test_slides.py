@@ -26,7 +26,7 @@ def test_sliding_advice_states_displacement_and_gap_exceedance() -> None:
     rows = advice.tables["slides"].groupby("group", sort=False)["displacement"]
     assert shares == [(moved > 0.1).mean() for _, moved in rows]
     assert not len(advice.groups)
-    assert not advice.findings().of("use")  # which says nothing of the flat-ground model of rolling
+    assert not advice.findings().of("use")  # no statement on the rolling flat-ground model
     assert advice.headline()["residual displacement as given [m]"] == trace.residual_displacement
 
 

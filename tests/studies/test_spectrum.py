@@ -18,9 +18,9 @@ WHOLE = el_centro_1940()
 # the seconds that hold its peak: a spectrum of the whole record takes six times as long and shows no more
 EL_CENTRO = GroundMotion(WHOLE.acceleration[:800], WHOLE.time_step)
 SIZES = np.array([1.0, 4.0, 8.0, 12.0])
-PROBES = 20  # below each lowest: what so many find is of another test
+PROBES = 20  # probes below each lowest; another test checks their power
 INTENSITIES = np.linspace(1.0, 11.0, 11)
-# the two runs differ in where the factor on the record is applied: rounding, grown by a few passes
+# runs differ in where the record factor is applied: rounding, grown by a few passes
 SAME_RUN = 1e-6
 
 
@@ -68,7 +68,7 @@ def test_tables_have_a_row_for_every_cell(spectrum):
     ].iloc[0]
     assert cell["peak_tilt"] == spectrum.peak_tilt[PLANAR_Y][3, 3]
     assert cell["peak_tilt_over_alpha"] == pytest.approx(cell["peak_tilt"] / math.atan(0.1), rel=1e-15)
-    # of the component that drives the run, at the factor that all three series share
+    # component that drives the run, at the common factor of all three series
     largest = np.abs(EL_CENTRO.acceleration[:, 1]).max() * cell["scale"]
     assert cell["peak_acceleration"] == pytest.approx(largest, rel=1e-14)
     assert cell["scale"] * EL_CENTRO.peak == pytest.approx(4.0 * 0.1 * 9.81, rel=1e-14)

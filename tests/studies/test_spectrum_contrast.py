@@ -82,7 +82,7 @@ def test_overturning_shares_exclude_failed_cells(monkeypatch):
     assert first["planar_overturned"] == 2 / 4
     assert first["unconservative"] == 1 / 4
     assert first["conservative"] == 0.0
-    # the failed cell would have been missed as well
+    # failed cell is excluded, although it would count as missed
     assert second["unconservative"] == 0.0
     assert second["conservative"] == pytest.approx(1 / 7)
     assert every["unconservative"] == pytest.approx(1 / 11)
@@ -100,7 +100,7 @@ def test_planar_overturning_boundary_is_that_of_the_worse_plane():
     assert unconservative_from(spectrum) == 5.0
     every = planar_contrast(spectrum).iloc[-1]
     assert (every["lower_edge"], every["higher_edge"]) == (2 / 5, 1 / 5)
-    # 2, 3, 4, 4 and none: the middle one
+    # 2, 3, 4, 4 and none: middle one
     assert every["lowest"] == 4.0
     assert every["planar_y_lowest"] == math.inf
 
@@ -123,7 +123,7 @@ def test_size_bands_have_round_width_and_cover_all_sizes(smallest, largest, widt
     assert edges[0] <= smallest
     assert edges[-1] >= largest
     assert 4 <= len(edges) <= 10
-    edges = size_bands(np.array([largest]))  # a single size
+    edges = size_bands(np.array([largest]))  # single size
     assert edges[0] <= largest <= edges[-1]
     assert len(planar_contrast(made_up(["oX"], ["oo"], ["oo"]))) == 2
 

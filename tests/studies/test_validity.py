@@ -101,7 +101,7 @@ def test_every_part_has_a_table_and_every_limit_has_numbers(tables: Tables) -> N
     assert all(len(table) for table in tables.values())
     ring = tables["rings"].query("support == 'ring'")
     assert set(ring[ring["peak"] > 0.0]["motion"]) == {FREE, EL_CENTRO}
-    for name in ("peak", "halved_peak"):  # so early no support makes a difference
+    for name in ("peak", "halved_peak"):  # early end: supports cannot differ
         known = tables["rings"].dropna(subset=name)
         assert known[name].to_list() == pytest.approx(known["recess_peak"].to_list(), rel=1e-2)
     groups = {limit.partition(".")[0] for limit in limits_of(tables, ALONE)["limit"]}
@@ -218,7 +218,7 @@ def test_map_cells_count_records_signed_changes_and_overturning(tables: Tables) 
     cell = cells({**tables, "peaks": table}).iloc[0]
     assert (cell["members"], cell["rocked"]) == (8, 8)
     assert (cell["overturned"], cell["flat_overturned"], cell["copy_overturned"]) == (0.25, 0.5, 0.0)
-    # halved, halved, and one that overturns on flat ground alone; twice overturned there is no ratio
+    # half, half, and one overturning on flat ground only; twice overturned has no ratio
     assert cell["flat_ratio"] == pytest.approx(0.5)
     assert cell["flat_90"] == math.inf
     assert cell["copy_ratio"] == pytest.approx(1.0)
@@ -245,7 +245,7 @@ def test_requirements_by_slenderness_and_intensity_need_enough_motions(tables: T
     )
     requirements = needs({**tables, "peaks": peaks}).set_index(["tan_alpha", "intensity"])
     assert list(requirements.index) == [(0.1, 2.0), (0.4, 2.0)]
-    # nine in ten of the size that needs most
+    # 90 % of the size with the largest need
     assert requirements["moment"].to_list() == pytest.approx([0.9 * 0.06, 0.9 * 0.3])
     assert requirements["friction"].to_list() == pytest.approx([1.8 * 0.06, 1.8 * 0.3])
     assert requirements[["sizes", "motions"]].to_numpy().tolist() == [[2, 20], [1, 10]]
@@ -259,7 +259,7 @@ def test_vertical_component_counts_records_it_alone_overturns() -> None:
     assert changed["overturned"].to_dict() == {"vertical": 2, "copy": 2, "recess": 2}
     row = changed.loc["vertical"]
     assert (row["cells"], row["compared"], row["other"]) == (11, 10, 2)  # twice overturned there is no ratio
-    assert (row["apart"], changed.loc["copy", "apart"]) == (10, 0)  # each changes by a tenth, or falls
+    assert (row["apart"], changed.loc["copy", "apart"]) == (10, 0)  # each changes by a tenth, or overturns
     assert row["least"] == row["largest"] == pytest.approx(1.1)
 
 
@@ -298,11 +298,11 @@ def test_soft_contact_is_identified_by_damping_and_failures_counted(tables: Tabl
 
 def test_limits_and_quantiles_handle_infinite_and_unknown_values() -> None:
     points, holds = pd.Series([0.1, 0.1, 0.2, 0.2, 0.3]), pd.Series([True, True, True, False, True])
-    assert limit_of(points, holds) == (0.1, 0.2)  # a point needs every row
+    assert limit_of(points, holds) == (0.1, 0.2)  # points count only if every row holds
     np.testing.assert_equal(limit_of(points, holds & False), (math.nan, 0.1))
     np.testing.assert_equal(limit_of(points, holds | True), (0.3, math.nan))
     np.testing.assert_equal(limit_of(points[:0], holds[:0]), (math.nan, math.nan))
-    # what is infinite counts, what is not known does not
+    # infinite values count, unknown ones do not
     assert quantile_reached(pd.Series([1.0, 2.0, math.inf, math.nan]), 0.6) == 2.0
     assert quantile_reached(pd.Series([1.0, 2.0, math.inf]), 0.9) == math.inf
 
@@ -362,7 +362,7 @@ def test_losses_and_model_differences_identify_the_support() -> None:
     assert float(ring["loss"]) > 100.0 * abs(float(flat["loss"]))
 
 
-# a number of each part that a slab or a tendon changes
+# one number of each part that slab or tendon changes
 OF_THE_BODY = {
     "free_response": "period",
     "verification": "half_period",

@@ -39,7 +39,7 @@ from external.table import Array, Table, Values, name_list, read_tables
 LEVELS = ("exact", "good", "pass")
 FEWEST_IN_WINDOW = 30
 FITTED_SAMPLES = 7  # of the polynomial through a maximum of the tilt
-FALLEN = 1.5  # [rad]: what fell ends early
+FALLEN = 1.5  # [rad] tilt of overturned runs, which end early
 ENOUGH = 4.0  # least factor by which a named mistake reduces the error
 EXPLAINED_RUNS = 3  # of the worst runs, for whose mistakes all are tried
 # differences that are explained: tilt [alpha] and azimuth [rad]
@@ -141,14 +141,14 @@ def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
             return math.inf
         before, after = (math.cos(run["alpha"] * (1.0 - top)) - math.cos(run["alpha"]) for top in tops)
         return after / before
-    if digits.isdigit() and name in ("turn", "period", "maximum"):  # of the first so many tilt maxima
+    if digits.isdigit() and name in ("turn", "period", "maximum"):  # over the first so many tilt maxima
         level = run.get("lean_level", 0.0) * run["alpha"]
         counted = (one for one in maxima(motion) if one[1] > level)
         first = [one for _, one in zip(range(int(digits)), counted, strict=False)]
         if len(first) < int(digits):
             return math.inf
         time, tilt, azimuth = first[-1]
-        if name == "turn":  # samples do not tell revolutions apart: of all, the nearest to the reference
+        if name == "turn":  # revolutions are unknown from samples: nearest number to the reference
             off = azimuth - run["start"]["azimuth"] - int(digits) * wanted
             return wanted + (math.nan if math.isnan(off) else math.remainder(off, 2.0 * math.pi)) / int(
                 digits
@@ -156,7 +156,7 @@ def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
         return float(time / int(digits) if name == "period" else tilt / run["alpha"])
     if quantity == "peak_tilt":
         peak = max([float(motion.tilt.max()), *(tilt for _, tilt, _ in maxima(motion))])
-        return float(min(peak, 0.5 * math.pi) / run["alpha"])  # no more than the side on the ground
+        return float(min(peak, 0.5 * math.pi) / run["alpha"])  # at most pi/2, the side on the ground
     if name == "slide":
         if motion.path is None:
             return math.nan
@@ -285,10 +285,10 @@ class Case:
         mistakes = [one for name in names for one in self.explanations(name, tables[name].values)]
         alone = [one.mistakes[0] for one in mistakes if len(one.mistakes) == 1]
         rates = [mistake.value for mistake in alone if mistake.code == "time_scale"]
-        if rates:  # a spin that does not go with the size changes that of each run a little
+        if rates:  # an unscaled spin changes each run a little
             yield (in_time_scale(sum(rates) / len(rates)),)
         yield from (one.changes for one in mistakes)
-        # of peaks alone nothing but units can be told
+        # peaks only can reveal unit errors and nothing else
         yield from ((change,) for change in readings(tables[names[0]].values))
 
     def mistakes(self, tables: Mapping[str, Table], motions: Motions) -> tuple[Mistake, ...]:
@@ -337,7 +337,7 @@ def judged(case: Case, path: Path) -> Judgement:
         )
     judgement = Judgement(outcomes, (), ignored)
     mistakes = case.mistakes(tables, motions) if judgement.verdict != "exact" else ()
-    # a maximum that a whole file does not reach is an answer, and a wrong one
+    # missing maximum of a complete file: a wrong answer
     whole = all(motion.time[-1] > 0.99 * case.runs[name]["duration"] for name, motion in motions.items())
     asked = [one for one in outcomes if one.unit in ("alpha", "b") and one.error == math.inf]
     short = [one.name for one in asked if not (whole and one.name.startswith("maximum"))]

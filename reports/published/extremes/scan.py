@@ -42,7 +42,7 @@ _PLANAR_MODEL = Run(None, "flat", plane=0.0)
 FINE = AGREEMENT  # of alpha, or of the angle of turn
 # relative to the energy that balances the cylinder on its rim
 _ENERGY = 1e-5
-_TIGHT, _REFERENCE = 1e-12, 1e-10  # tolerances
+_TIGHT, _REFERENCE = 1e-12, 1e-10  # tight and reference tolerances
 # what makes an engine leave its reference: no wall, which the reference at half the step meets as well; a
 # reduced model errs only where the side of a pass is undetermined
 _EXPLAINS = frozenset(
@@ -335,11 +335,11 @@ def _engine(condition: Condition, run: Run, trace: Trace) -> Verdict:
     reference = _simulate(case, other, condition)
     if reference.outcome == "failed":
         return Verdict(verdict="no reference", reference=name, until=0.0)
-    # a fall after the run is no concern of it but for its outcome: it multiplies every difference
+    # later divergence does not matter, except for the outcome
     held = reference.assumptions_until(case.length) if name == "model" else None
     until = min((fact.time for fact in held.breaches), default=math.inf) if held else math.inf
     error, begins = _tilt_error(reference, trace)
-    if error <= FINE:  # whatever the model assumes, the engine agrees with it to the end
+    if error <= FINE:  # agreement to the end, whatever the model assumes
         return Verdict(verdict="fine", error=error, reference=name)
     limit = _explanation(trace.diagnostics, _EXPLAINS, begins)
     verdict = "flagged" if limit else "silent"

@@ -81,7 +81,7 @@ def rows_of(tan_alpha: float, intensity: float) -> Iterator[dict[str, Any]]:
     record = el_centro_1940()
     shaking = record.scaled(intensity * 9.81 * tan_alpha / record.peak)
     body = Cylinder(semidiagonal=BODIES[tan_alpha], tan_alpha=tan_alpha)
-    rolled: list[Trace] = []  # by the flat-ground model, the same at every friction
+    rolled: list[Trace] = []  # flat-ground model traces, equal for every friction
     for friction in FRICTIONS:
         case = Case(body, shaking, duration=DURATION, friction=friction)
         copies = perturbed_copies(case, COPIES, perturbation=0.01, seed=1)

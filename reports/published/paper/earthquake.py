@@ -25,7 +25,7 @@ _NEIGHBOURS = tuple(0.9 + 0.005 * i for i in range(41))
 _NEIGHBOUR_STEP = 2e-3  # [s]; enough to count by
 # "abruptly": faster by this factor than the steady wobble at half of alpha
 _ABRUPT = 10.0
-# less than tells two instruments apart
+# smaller than the difference of two instruments
 NUDGE = 1e-3
 # a difference of a quarter is seen in a figure
 _PLAINLY = 1.25

@@ -21,7 +21,7 @@ DISC = 1000.0  # the slenderness that the paper takes for a spinning disc
 TAN_ALPHAS = (0.1, 0.2, 0.5, 1.0, 3.0, DISC)
 # next to alpha the last trace of height decides, and no thickness is thin
 _DISC_REACH = 0.9
-_DISC_TOLERANCE = 0.01  # what no eye sees in a figure
+_DISC_TOLERANCE = 0.01  # tolerance invisible in a figure
 # of the period, over tilts up to this share of alpha: what an engineer accepts of a linearisation
 _SLENDER_TOLERANCE = 0.01
 _LINEAR_REACH = 0.95

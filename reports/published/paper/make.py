@@ -146,7 +146,7 @@ _LINE = Style(colour=ORDER[0])
 _PIER = f"R = {PIER.semidiagonal:g} m, tan α = {PIER.tan_alpha:g}"
 # cividis, dark to light by slenderness
 _SHADES = ("#00224e", "#2b406d", "#595e6e", "#7e7d78", "#a99f73", "#d6c35d")
-_ROCKING = (1.0, free.DISC)  # the curves of slender bodies lie under Housner's
+_ROCKING = (1.0, free.DISC)  # curves of slender bodies lie under Housner's
 _HISTORIES = (("θ / α", "-"), ("θ'", "rad/s"), ("φ / π", "-"), ("φ'", "rad/s"))
 _FROM_0 = replace(TIME, low=0.0)
 

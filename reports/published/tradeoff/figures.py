@@ -52,7 +52,7 @@ def _picture(results: Tradeoff, problem: str) -> Picture:
         chosen = points[(points["support"] == support) & (points["panel"] == name)]
         if chosen.empty or (support, name) not in _SHOWN.get(problem, _PANELS):
             continue
-        plain = [_BASE] if name in _OF_MODEL else []  # what the variants are variants of
+        plain = [_BASE] if name in _OF_MODEL else []  # baseline of the variants
         plain += [f"{engine} {support}" for engine in chosen["family"].unique() if name in _OF_ENGINES]
         chosen = pd.concat([points[points["line"].isin(plain)], chosen])
         described = results.problems[

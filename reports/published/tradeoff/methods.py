@@ -41,7 +41,7 @@ TOLERANCE_SCALE = np.array([1e-3, 1e-3, 1.0, 1e-3])
 _SWING = 10.0  # of sqrt(R/g): for which a swing is followed past the end
 _AFTER_UPLIFT = 2e-3  # [s]
 _INSTANT = 1e-9  # of motion, for the momentum of a release [s]
-# the recess model as it comes: every computing time is a multiple of its own
+# unit of all computing times: the recess model by default
 BASE_LINE = str(Run(None, RECESS))
 BASE_TOLERANCE = 1e-8
 REST_PANEL = "rest threshold"
@@ -125,7 +125,7 @@ def _model_methods(problem: Problem, quick: bool) -> Iterator[Method]:
         solve = partial(_by_model, problem, support, reduced.REST_TILT)
         solved = {rtol: partial(solve, rtol) for rtol in tolerances}
         yield from _line(str(Run(None, support)), "reduced", solved, support=support)
-    # on still ground nothing comes to rest
+    # no rest on still ground
     for rest_tilt in () if problem.name == "turn" else (FINE_REST_TILT, 1e-5, 0.1):
         solved = {rtol: partial(_by_model, problem, RECESS, rest_tilt, rtol) for rtol in tolerances}
         yield from _line(rest_line(rest_tilt), "reduced", solved, panel=REST_PANEL)
@@ -147,7 +147,7 @@ def _by_model(problem: Problem, support: str, rest_tilt: float, rtol: float, cas
 def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
     tolerances: tuple[float, ...] = (1e-3, 1e-5, 1e-7, 1e-9)
     languages = {"Python": False, "numba": True}
-    if problem.name == "peaks":  # a compilation for every member would be all that is measured
+    if problem.name == "peaks":  # compilation would dominate every member
         tolerances, languages = tolerances[:3], {"Python": False}
     if quick:
         tolerances, languages = tolerances[:2], {"Python": False}
@@ -254,7 +254,7 @@ def rates_of(case: Case, *, compiled: bool) -> RatesFunction:
     # still ground for the swing at the end, and a sample more for the last stage of a solver
     beyond = math.ceil(_SWING / (motion.time_step * math.sqrt(9.81 / case.cylinder.semidiagonal))) + 2
     padded = np.vstack([motion.acceleration[:, :2], np.zeros((beyond, 2))])
-    # numbers of Python are quicker than those of an array, where nothing compiles
+    # Python floats are faster than arrays in uncompiled code
     samples: Array | list[tuple[float, ...]] = padded if compiled else [tuple(row) for row in padded.tolist()]
     per_second, cylinder = 1.0 / motion.time_step, case.cylinder
     b, h = cylinder.base_radius, cylinder.half_height
@@ -326,14 +326,14 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
         )
     if not run.success or not np.isfinite(run.y).all() or run.y[0].min() < 0.0:
         return np.empty(0)
-    if sampled:  # before the start it stood, or moved as the recess model does
+    if sampled:  # before the start: at rest, or as the recess model
         return np.concatenate([reference[: len(reference) - run.y.shape[1]], run.y[0] / case.cylinder.alpha])
     instants = (run.t_events or [np.empty(0)])[0]
     maxima = np.asarray((run.y_events or [np.empty(0)])[0]).reshape(-1, 4)
-    if problem.name == "turn":  # the release is a maximum itself
+    if problem.name == "turn":  # release is a maximum itself
         return np.asarray(np.degrees(np.abs(maxima[instants > 0.1][:1, 2] - rates.state[2])))
     peak = max(float(run.y[0].max()), float(maxima[:, 0].max(initial=0.0)))
-    if run.status == 0:  # it moves, and swings to its next maximum
+    if run.status == 0:  # still moving, so followed to its next maximum
         turns_back.terminal = True  # type: ignore[attr-defined]
         span = rates.end, rates.end + _SWING / math.sqrt(9.81 / case.cylinder.semidiagonal)
         peak = max(peak, float(integrate(span, run.y[:, -1], events=turns_back).y[0].max()))

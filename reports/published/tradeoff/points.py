@@ -30,7 +30,7 @@ from rockwobble.reports.published.tradeoff.problem import (
 )
 from rockwobble.reports.published.tradeoff.scenes import scene_costs
 
-# a run shorter than this is repeated, so that a tick of the clock does not show [s]
+# runs are repeated up to this time, to hide the clock tick [s]
 _SHORT = 2e-3
 _REPEATS = 5
 ROUNDS = 3  # of a single case; an ensemble has as many as members
