@@ -166,7 +166,7 @@ def model_prediction(case: Case, trace: Trace, run: Run | None) -> Prediction:
         case,
         reference=trace,
         own=trace,
-        # time scale of the fastest fall, long compared with that of penetration
+        # resolution at the tilt rate of the fastest fall; penetration counts for less
         contact_resolution=STEPS_OF_A_PASS * float(np.abs(trace.tilt_rate).max()) * step,
         error=estimated_error(case, run or Run(DEFAULT_ENGINE, trace.run.support), step),
         simulate=simulate_run,

@@ -327,7 +327,7 @@ def interval(value: float, drawn: Array, motions: int, *, above: Array | None = 
     anything: it counts as minus infinity at the lower end and as infinity at the upper one.
     """
     low, high = expanded_shares(motions)
-    # an infinite end where unknown; interpolation with it gives the outer neighbour
+    # infinite where unknown; the outer neighbour, as an infinite end allows no interpolation
     lower, upper = (
         np.sort(np.where(np.isnan(bounds), unknown, bounds))
         for unknown, bounds in ((-math.inf, drawn), (math.inf, drawn if above is None else above))
