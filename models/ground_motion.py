@@ -82,8 +82,8 @@ class GroundMotion:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, GroundMotion):
             return NotImplemented
-        own, others = (self.time_step, self.name), (other.time_step, other.name)
-        return own == others and np.array_equal(self.acceleration, other.acceleration)
+        facts, others = (self.time_step, self.name), (other.time_step, other.name)
+        return facts == others and np.array_equal(self.acceleration, other.acceleration)
 
     def __hash__(self) -> int:
         # hash of some hundred samples: a run asks for it several times, and a hash of all took a tenth of its

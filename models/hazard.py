@@ -138,8 +138,8 @@ class HazardCurve(CompactRepr):
     def intensity_at(self, annual_frequency: float) -> float:
         """Return the intensity that is exceeded with an annual frequency [1/year]; NaN beyond the ends."""
         y = -np.log(self.annual_frequency)
-        found = np.interp(-math.log(annual_frequency), y, np.log(self.intensity), left=np.nan, right=np.nan)
-        return float(np.exp(found))
+        logs = np.interp(-math.log(annual_frequency), y, np.log(self.intensity), left=np.nan, right=np.nan)
+        return float(np.exp(logs))
 
 
 def measure_of(measure: str, period: float | None) -> tuple[str, float | None]:

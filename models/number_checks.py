@@ -102,22 +102,22 @@ def require_numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Array of real numbers in its shape; ValueError unless all are real."""
     try:
         # numpy would drop an imaginary part
-        found = None if np.iscomplexobj(values) else np.array(values, dtype=np.float64)
+        array = None if np.iscomplexobj(values) else np.array(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        found = None
-    if found is None:
+        array = None
+    if array is None:
         raise ValueError(f"{name} must be numbers, got {quoted(values)}")
-    return found
+    return array
 
 
 def require_increasing(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Read-only array (n,); ValueError unless it is positive, finite and increasing."""
-    found = require_numbers(name, values)
-    good = found.ndim == 1 and found.size and found[0] > 0.0 and (np.diff(found) > 0.0).all()
-    if not (good and np.isfinite(found).all()):
+    array = require_numbers(name, values)
+    good = array.ndim == 1 and array.size and array[0] > 0.0 and (np.diff(array) > 0.0).all()
+    if not (good and np.isfinite(array).all()):
         raise ValueError(f"{name} must be positive, finite and increasing, got {quoted(values)}")
-    found.flags.writeable = False
-    return found
+    array.flags.writeable = False
+    return array
 
 
 def require_one_of(name: str, value: object, allowed: Iterable[str]) -> None:

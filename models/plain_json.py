@@ -77,7 +77,7 @@ def first_not_plain(value: object, place: str) -> str | None:
     else:
         same = value is None or type(value) in (bool, int, float, str)
         return None if same else f"{place}, {type(value).__name__}"
-    return next((found for name, each in items if (found := first_not_plain(each, f"{place}.{name}"))), None)
+    return next((first for name, each in items if (first := first_not_plain(each, f"{place}.{name}"))), None)
 
 
 def _in_words(value: JsonValue) -> JsonValue:
@@ -89,6 +89,6 @@ def _in_words(value: JsonValue) -> JsonValue:
     return {_FLOAT: str(value)} if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _float(found: dict[str, object]) -> object:
-    word = found.get(_FLOAT)
-    return float(word) if len(found) == 1 and isinstance(word, str) else found
+def _float(members: dict[str, object]) -> object:
+    word = members.get(_FLOAT)
+    return float(word) if len(members) == 1 and isinstance(word, str) else members

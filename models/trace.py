@@ -44,10 +44,10 @@ class LazySample:
     def __get__(self, trace: Trace | None, owner: type) -> Array | LazySample:
         if trace is None:
             return self
-        found = trace.late.get(self._name)
+        array = trace.late.get(self._name)
         count = len(trace.time)
         return (
-            np.full(count if self._width == 1 else (count, self._width), math.nan) if found is None else found
+            np.full(count if self._width == 1 else (count, self._width), math.nan) if array is None else array
         )
 
 
@@ -470,18 +470,18 @@ class Trace(Shown):
     def summary(self) -> dict[str, str]:
         """Return the main facts in words and numbers, by name."""
         alpha = self.case.cylinder.alpha
-        found = {
+        facts = {
             "case": self.case.name or str(self.case),
             "run": str(self.run),
             "outcome": f"{self.outcome} at {self.time[-1]:.4g} s" if len(self.time) else self.outcome,
             "mode": self.mode or "not known",
         }
         if "slides" in self.mode:
-            found["displacement"] = (
+            facts["displacement"] = (
                 f"{self.peak_displacement:.4g} m, at the end {self.residual_displacement:.4g} m"
             )
         if self.mode != SLIDES:
-            found |= {
+            facts |= {
                 "peak tilt": "not known"
                 if math.isnan(self.peak_tilt)
                 else f"{self.peak_tilt / alpha:.4g} alpha",
@@ -489,12 +489,12 @@ class Trace(Shown):
                 "passes": str(len(self.passes)),
             }
         if self.outcome == "stands" and not self.rests:
-            found["outcome"] += ", moving"
+            facts["outcome"] += ", moving"
             if not math.isnan(self.followed_until):
-                found["outcome"] += f", followed to {self.followed_until:.4g} s"
+                facts["outcome"] += f", followed to {self.followed_until:.4g} s"
         if self.facts:
-            found["diagnostics"] = cell_of(fact.code for fact in self.facts)
-        return found
+            facts["diagnostics"] = cell_of(fact.code for fact in self.facts)
+        return facts
 
     _main_facts = summary
 

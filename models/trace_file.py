@@ -147,10 +147,10 @@ def trace_arguments(facts: Facts, samples: pd.DataFrame) -> JsonObject:
     if "rest_intervals" not in facts:
         raise ValueError("a trace of 0.2 or older must be run again: it does not say where it rests")
     # a file of an older version lacks later fields
-    found: dict[str, Array] = {name: samples[name].to_numpy() for name in samples.columns}
+    arguments: dict[str, Array] = {name: samples[name].to_numpy() for name in samples.columns}
     for name, columns in VECTORS.items():
-        if columns[0] in found:
-            found[name] = samples[list(columns)].to_numpy()
+        if columns[0] in arguments:
+            arguments[name] = samples[list(columns)].to_numpy()
     held, run = facts["assumptions"], facts["run"]
     passes = {
         name: np.array(column, dtype=bool if name == "resolved" else float)
@@ -158,14 +158,14 @@ def trace_arguments(facts: Facts, samples: pd.DataFrame) -> JsonObject:
     }
     return {
         **facts,
-        **{name: found[name] for name in FIELDS},
+        **{name: arguments[name] for name in FIELDS},
         "run": Run(run["engine"], run["support"], run["time_step"], **run["settings"]),
         "facts": _diagnostics(facts["facts"]),
         "rest_intervals": np.array(facts["rest_intervals"], dtype=float).reshape(-1, 2),
         "extrema": np.array(facts["extrema"], dtype=float).reshape(-1, 4),
         "passes": pd.DataFrame(passes),
         "source": EagerSource(
-            found,
+            arguments,
             None if held is None else Assumptions(**held | {"breaches": _diagnostics(held["breaches"])}),
         ),
     }

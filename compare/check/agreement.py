@@ -74,11 +74,11 @@ _COPY = 1e-3  # relative change of record or release in the copy whose divergenc
 
 def fields(subject: Subject, support: str) -> Iterator[Result]:
     """Every field of a trace that the model of the support also has, and the balance of energy."""
-    found, model = _both(subject, SHAKEN, support, _SAMPLE)
-    whole = len(found.time) == len(model.time)
+    trace, model = _both(subject, SHAKEN, support, _SAMPLE)
+    whole = len(trace.time) == len(model.time)
 
     def difference(name: str, cut: slice = slice(None)) -> float:
-        return largest(getattr(found, name)[cut] - getattr(model, name)[cut]) if whole else math.nan
+        return largest(getattr(trace, name)[cut] - getattr(model, name)[cut]) if whole else math.nan
 
     for name, (unit, size, times) in _FIELDS.items():
         yield at_most(name, difference(name) / size, subject.tolerance_bound(times, _CONTACT, unit))
@@ -88,12 +88,12 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
     # without the half window at either end
     yield at_most("contact force", difference("contact_force", slice(2, -2)), force)
     if "energy_error" in subject.knows:
-        work = -(found.centre_of_mass - found.centre_of_mass[0]) @ GROUND
-        left = largest(found.energy - found.energy[0] - work - found.energy_error)
+        work = -(trace.centre_of_mass - trace.centre_of_mass[0]) @ GROUND
+        left = largest(trace.energy - trace.energy[0] - work - trace.energy_error)
         bound = subject.tolerance_bound(1.0, "work step by step, and samples between steps", "g R")
         yield at_most("energy error against energy and work", left / _FIELDS["energy"][1], bound)
         outside = np.hypot(*model.contact_point.T) - BODY.base_radius
-        off = largest(found.contact_offset - outside) if whole else math.nan
+        off = largest(trace.contact_offset - outside) if whole else math.nan
         yield at_most(
             "contact offset", off / BODY.base_radius, subject.tolerance_bound(1.0, "as the model", "b")
         )
@@ -101,24 +101,24 @@ def fields(subject: Subject, support: str) -> Iterator[Result]:
 
 def release(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt, peak and passes of a release with a near-upright pass."""
-    found, model = _both(subject, RELEASE, support)
-    yield _leans(subject, found, model, "tilt and azimuth of a release", 1.0, _CONTACT)
+    trace, model = _both(subject, RELEASE, support)
+    yield _leans(subject, trace, model, "tilt and azimuth of a release", 1.0, _CONTACT)
     bound = subject.tolerance_bound(10.0, "as the model", "s, rad")
     if "passes" in subject.knows:
         columns = ["time", "minimum_tilt", "angle_of_turn"]
         yield at_most(
             "passes of a release",
-            _distance(*(each.passes[columns] for each in (found, model))),
+            _distance(*(each.passes[columns] for each in (trace, model))),
             bound,
         )
     if "extrema" in subject.knows:
-        off = _distance(found.extrema[:, :2], model.extrema[:, :2])
+        off = _distance(trace.extrema[:, :2], model.extrema[:, :2])
         yield at_most("turning points of a release", off, bound)
 
 
-def _distance(own: ArrayLike, other: ArrayLike) -> float:
+def _distance(values: ArrayLike, other: ArrayLike) -> float:
     """Return the largest difference of two tables; NaN where they have not as many rows."""
-    tables = np.asarray(own, dtype=float), np.asarray(other, dtype=float)
+    tables = np.asarray(values, dtype=float), np.asarray(other, dtype=float)
     return largest(tables[0] - tables[1]) if tables[0].shape == tables[1].shape else math.nan
 
 
@@ -151,12 +151,12 @@ def record(subject: Subject, support: str) -> Iterator[Result]:
 def ring(subject: Subject, support: str) -> Iterator[Result]:
     """Recess with clearance: flat ground until contact with a wall; the walls bound the displacement."""
     case = release_case(0.5, 0.5, 4.0, SQUAT)
-    found, flat = (subject.simulate(case, each) for each in (support, FLAT))
-    before = found.time < found.first("wall_contact")
-    same = len(found.time) == len(flat.time)
-    apart = largest(found.tilt[before] - flat.tilt[before]) if same else math.nan
+    trace, flat = (subject.simulate(case, each) for each in (support, FLAT))
+    before = trace.time < trace.first("wall_contact")
+    same = len(trace.time) == len(flat.time)
+    apart = largest(trace.tilt[before] - flat.tilt[before]) if same else math.nan
     yield at_most("tilt before a wall is touched", apart, subject.tolerance_bound(0.0, "the same run", "rad"))
-    yield from walls("release, tan alpha = 1", case, found)
+    yield from walls("release, tan alpha = 1", case, trace)
 
 
 def trajectory(subject: Subject, support: str) -> Iterator[Result]:
@@ -165,19 +165,19 @@ def trajectory(subject: Subject, support: str) -> Iterator[Result]:
     That is until a copy whose record or release is off by 0.1 % is 1 % of alpha away.
     """
     for case in subject.cases or ():
-        found, model = _both(subject, case, support)
+        trace, model = _both(subject, case, support)
         alpha = case.cylinder.alpha
         if case.initial is None:
-            seen = [exceeds(each.time, each.tilt, _LEVEL * alpha, 3.0) for each in (found, model)]
+            seen = [exceeds(each.time, each.tilt, _LEVEL * alpha, 3.0) for each in (trace, model)]
             off = 0.0 if seen[0] == seen[1] else abs(seen[0] - seen[1])
             yield at_most("time of uplift", off, subject.tolerance_bound(1.0, "as the model", "s"))
         else:
-            off = abs(float(found.tilt[0]) - case.initial.tilt) / alpha
+            off = abs(float(trace.tilt[0]) - case.initial.tilt) / alpha
             yield at_most("tilt at release", off, subject.tolerance_bound(1.0, "as stated", "alpha"))
         end = _agreement(subject, case, support, model)
         name, reason = f"tilt and azimuth up to {end:.4g} s", "as asked for"
-        yield _leans(subject, found, model, name, 1.0, reason, end)
-        peaks = [float(each.tilt[each.time <= end].max()) / alpha for each in (found, model)]
+        yield _leans(subject, trace, model, name, 1.0, reason, end)
+        peaks = [float(each.tilt[each.time <= end].max()) / alpha for each in (trace, model)]
         yield at_most("peak tilt", abs(peaks[0] - peaks[1]), subject.tolerance_bound(1.0, reason, "alpha"))
 
 
@@ -197,18 +197,18 @@ def walls(name: str, case: Case, trace: Trace) -> Iterator[Result]:
 def _both(subject: Subject, case: Case, support: str, sample_step: float = 0.01) -> tuple[Trace, Trace]:
     """Motion of the subject and of the independent model; a failed motion raises its reason."""
     assert subject.reference is not None
-    found = subject.simulate(case, support, sample_step=sample_step)
-    if found.outcome == "failed":
-        raise RuntimeError(f"the run failed: {why(found)}")
+    trace = subject.simulate(case, support, sample_step=sample_step)
+    if trace.outcome == "failed":
+        raise RuntimeError(f"the run failed: {why(trace)}")
     model = subject.reference(case, support=support, rtol=1e-11, sample_step=sample_step)
-    return found, model
+    return trace, model
 
 
 def _leans(
-    subject: Subject, found: Trace, model: Trace, name: str, times: float, reason: str, end: float = math.inf
+    subject: Subject, trace: Trace, model: Trace, name: str, times: float, reason: str, end: float = math.inf
 ) -> Result:
     """Compare the leans to the end of the case, or until a time: root mean square over sin(alpha)."""
-    apart = lean_difference(found, model, min(end, model.case.length))
+    apart = lean_difference(trace, model, min(end, model.case.length))
     bound = subject.tolerance_bound(times, reason, "alpha")
     return at_most(name, rms(apart) if len(apart) > 1 else math.inf, bound)
 
@@ -234,8 +234,8 @@ def order(subject: Subject, support: str) -> Iterator[Result]:
     times = _STEPS if subject.tolerance == ENGINE_TOLERANCE else _COARSE_STEPS
     steps, errors = REFERENCE_TIME_STEP * np.array(times), []
     for step in steps.tolist():
-        found = engine(subject.label, step, **subject.run.settings).simulate(LOW_RELEASE, support)
-        errors.append(math.nan if found.outcome == "failed" else rms(found.tilt - exact.tilt))
+        trace = engine(subject.label, step, **subject.run.settings).simulate(LOW_RELEASE, support)
+        errors.append(math.nan if trace.outcome == "failed" else rms(trace.tilt - exact.tilt))
     known = all(math.isfinite(error) and error > 0.0 for error in errors)
     slope = float(np.polyfit(np.log(steps), np.log(errors), 1)[0]) if known else math.nan
     bound, order = (

@@ -113,12 +113,12 @@ def same_as_baseline(subject: Subject, support: str) -> Iterator[Result]:
         verdict = compare_entries(one, new)
         share = _share(verdict, one, new)
         notes = [] if verdict.word == SAME else [str(verdict), *others]
-        found = at_most(one["name"], share, _BOUND)
+        result = at_most(one["name"], share, _BOUND)
         if version != kept.version:
             notes.insert(0, f"the baseline is of {subject.label} {kept.version}, this is {version}")
-            if found.failed:
-                found = dataclasses.replace(found, outcome=NO_BASELINE)
-        yield dataclasses.replace(found, note="; ".join(notes))
+            if result.failed:
+                result = dataclasses.replace(result, outcome=NO_BASELINE)
+        yield dataclasses.replace(result, note="; ".join(notes))
 
 
 def baseline_changes(old: Baseline, new: tuple[Entry, ...], subject: Subject) -> list[str]:
@@ -147,8 +147,8 @@ def updated_baseline(
     reason = " ".join(reason.split())
     if not reason:
         raise ValueError("a reason must be given for changing a baseline, got none")
-    made = {"date": date, "reason": reason, "version": _version(subject), "versions": package_versions()}
-    return as_json({"reasons": [*old.reasons, made], "fingerprint": list(new)})
+    origin = {"date": date, "reason": reason, "version": _version(subject), "versions": package_versions()}
+    return as_json({"reasons": [*old.reasons, origin], "fingerprint": list(new)})
 
 
 def _version(subject: Subject) -> str:
@@ -259,8 +259,8 @@ def verify(
     known = {short.name for short in short_cases()}
     if unknown := [one["name"] for one in old if one["name"] not in known]:
         raise ValueError(f"the certificate has a case {unknown[0]}, this version has none: make it anew")
-    own = subject_of(certificate) if subject is None else subject
-    return compare(old, repeat(own, old, progress))
+    checked = subject_of(certificate) if subject is None else subject
+    return compare(old, repeat(checked, old, progress))
 
 
 def certificate_findings(certificate: Certificate, verdict: FingerprintVerdict) -> Findings:

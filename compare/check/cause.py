@@ -71,8 +71,8 @@ def likely_cause(subject: Subject, support: str, cases: Sequence[Case]) -> str:
     cases : sequence of Case
         A release, and motions from rest.
     """
-    found, reference = [subject.simulate(case, support) for case in cases], subject.reference
-    if reference is None or any(not len(trace.time) or trace.outcome == "failed" for trace in found):
+    traces, reference = [subject.simulate(case, support) for case in cases], subject.reference
+    if reference is None or any(not len(trace.time) or trace.outcome == "failed" for trace in traces):
         return ""
 
     def models(changed: Sequence[Case]) -> list[Trace]:
@@ -80,19 +80,19 @@ def likely_cause(subject: Subject, support: str, cases: Sequence[Case]) -> str:
 
     def left_by(change: Change, at: float) -> float:
         try:
-            return _difference(found, models([change(case, at) for case in cases]))
+            return _difference(traces, models([change(case, at) for case in cases]))
         except ValueError:  # no body has such an inertia
             return math.inf
 
     as_stated = models(cases)
-    whole = _difference(found, as_stated)
+    whole = _difference(traces, as_stated)
     if not _LEAST * subject.tolerance < whole < math.inf:
         return ""
     lefts: dict[str, Callable[[float], float]] = {
         name: lambda exponent, change=change: left_by(change, math.exp(exponent))  # type: ignore[misc]
         for name, change in CANDIDATES.items()
     }
-    lefts["clock"] = lambda exponent: _difference(found, as_stated, clock=math.exp(exponent))
+    lefts["clock"] = lambda exponent: _difference(traces, as_stated, clock=math.exp(exponent))
     fits = {name: _lowest(left, -_WIDEST, _WIDEST) for name, left in lefts.items()}
     rests = {f"{name} {100.0 * math.expm1(at):+.2g} %": rest for name, (at, rest) in fits.items()}
     share, rest = _lowest(lambda share: left_by(_with_loss, share), 0.0, _LARGEST_LOSS)
@@ -109,15 +109,15 @@ def _lowest(function: Callable[[float], float], low: float, high: float) -> tupl
     grid = np.linspace(low, high, 13)
     best = int(np.argmin([function(float(at)) for at in grid]))
     around = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, len(grid) - 1)])
-    found = minimize_scalar(function, bounds=around, method="bounded", options={"xatol": 1e-6})
-    return float(found.x), float(found.fun)
+    minimum = minimize_scalar(function, bounds=around, method="bounded", options={"xatol": 1e-6})
+    return float(minimum.x), float(minimum.fun)
 
 
-def _difference(found: Sequence[Trace], models: Sequence[Trace], *, clock: float = 1.0) -> float:
+def _difference(traces: Sequence[Trace], models: Sequence[Trace], *, clock: float = 1.0) -> float:
     """Root mean square difference of the tilt vectors of all cases, over sin(alpha)."""
     parts = [
         lean_difference(one, other, other.case.length, clock=clock)
-        for one, other in zip(found, models, strict=True)
+        for one, other in zip(traces, models, strict=True)
     ]
     apart = rms(np.concatenate(parts)) if all(len(part) > 1 for part in parts) else math.nan
     return apart if math.isfinite(apart) else math.inf

@@ -211,10 +211,10 @@ def repeat(
     stage = stages(progress, [short.case.length for short in shorts])
     for one, short in zip(old, shorts, strict=True):
         with stage(short.name):
-            found = entry(short, _run(subject, short, short.case))
-            if one["agreement_time"] is not None and compare_entries(one, found).word != SAME:
-                found["copies"] = copied_tilts(short, subject)
-        yield found
+            computed = entry(short, _run(subject, short, short.case))
+            if one["agreement_time"] is not None and compare_entries(one, computed).word != SAME:
+                computed["copies"] = copied_tilts(short, subject)
+        yield computed
 
 
 def _run(subject: Subject, short: ShortCase, case: Case) -> Trace:

@@ -143,19 +143,19 @@ def _same(
     plain = subject.simulate(case, support, sample_step=_SAMPLE)
     trace = subject.simulate(other, support, sample_step=slower * _SAMPLE)
     moved = float(np.ptp(plain.tilt)) > 0.05 * PIER.alpha
-    own = _on(plain.time, trace.time / slower, lean(trace))
-    off = largest(np.abs(own - expected(lean(plain)))) if moved else math.nan
+    restated = _on(plain.time, trace.time / slower, lean(trace))
+    off = largest(np.abs(restated - expected(lean(plain)))) if moved else math.nan
     bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
     return at_most(f"{words}, {case.name}", off, bound)
 
 
-def _on(time: NDArray[np.float64], own: NDArray[np.float64], values: Lean) -> Lean:
+def _on(time: NDArray[np.float64], times: NDArray[np.float64], values: Lean) -> Lean:
     """Values interpolated at other times: an external model chooses its samples."""
-    if len(own) == len(time) and np.allclose(own, time, rtol=0.0, atol=1e-9):
+    if len(times) == len(time) and np.allclose(times, time, rtol=0.0, atol=1e-9):
         return values
     from scipy.interpolate import CubicSpline
 
-    return np.asarray(CubicSpline(own, values)(np.clip(time, own[0], own[-1])))
+    return np.asarray(CubicSpline(times, values)(np.clip(time, times[0], times[-1])))
 
 
 _ALL = Bound(0.0, "the protocol of an engine")

@@ -135,13 +135,13 @@ def potential(shape: Shape, theta: Array, phi: Array, ground: Array) -> Array:
     """Return V per unit mass, zero standing, with the inertia of the ground's acceleration (n, 3)."""
     pull = ground + np.array([0.0, 0.0, GRAVITY])
     standing = np.array([0.0, 0.0, shape.h])
-    found: Array = ((mass_centre(shape, theta, phi) - standing) * pull).sum(axis=-1)
+    energies: Array = ((mass_centre(shape, theta, phi) - standing) * pull).sum(axis=-1)
     if shape.prestress or shape.stiffness:
         away = base_centre(shape, theta, phi)
         stretch = gaps(shape) * np.sqrt((away * away).sum(axis=-1))
         stored = shape.prestress * stretch + 0.5 * shape.stiffness * stretch * stretch
-        found = found + stored / (1.0 + 2.0 * shape.slab)
-    return found
+        energies = energies + stored / (1.0 + 2.0 * shape.slab)
+    return energies
 
 
 def base_centre(shape: Shape, theta: Array, phi: Array) -> Array:
@@ -158,8 +158,8 @@ def gaps(shape: Shape) -> int:
 def energy(shape: Shape, theta: Array, phi: Array, theta_rate: Array, phi_rate: Array) -> Array:
     """Return T + V over still ground (n,) [m^2/s^2]."""
     still = np.zeros((*np.shape(theta), 3))
-    found = kinetic(shape, theta, phi, theta_rate, phi_rate) + potential(shape, theta, phi, still)
-    return np.asarray(found, dtype=float)
+    total = kinetic(shape, theta, phi, theta_rate, phi_rate) + potential(shape, theta, phi, still)
+    return np.asarray(total, dtype=float)
 
 
 def momenta(
@@ -202,10 +202,10 @@ def residuals(
     time = (np.arange(2 * REACH + 1) - REACH)[:, None] * _ALONG
     tilt, turn = (x + v * time + 0.5 * w * time**2 for x, v, w in zip(place, rates, curves, strict=True))
     tilt_rate, turn_rate = (v + w * time for v, w in zip(rates, curves, strict=True))
-    found = momenta(shape, tilt, turn, tilt_rate, turn_rate)
+    inertial = momenta(shape, tilt, turn, tilt_rate, turn_rate)
     needed = forces(shape, *place, *rates, ground)
     by_tilt, by_turn = (
-        rate(momentum, _ALONG)[0] - force for momentum, force in zip(found, needed, strict=True)
+        rate(momentum, _ALONG)[0] - force for momentum, force in zip(inertial, needed, strict=True)
     )
     return by_tilt, by_turn
 
@@ -290,7 +290,7 @@ def residual(subject: Subject, support: str) -> Iterator[Result]:
             continue
         errors = {place: _residuals(subject, support, body, terms) for place, body in CYLINDERS.items()}
         for at, name in enumerate(NAMES):
-            worst = {place: found[at] for place, found in errors.items()}
+            worst = {place: each[at] for place, each in errors.items()}
             yield worst_of(f"{name}{words}", worst, bound)
 
 

@@ -198,20 +198,20 @@ def lean(trace: Trace) -> NDArray[np.complex128]:
     return np.asarray(np.sin(trace.tilt) / math.sin(trace.case.cylinder.alpha) * turn)
 
 
-def lean_difference(found: Trace, model: Trace, end: float = math.inf, *, clock: float = 1.0) -> Array:
+def lean_difference(trace: Trace, model: Trace, end: float = math.inf, *, clock: float = 1.0) -> Array:
     """Difference of the tilt vectors until a time (n,), over sin(alpha) of the first.
 
-    Of the tilt alone without an azimuth; `clock` stretches the time of `found`.
+    Of the tilt alone without an azimuth; `clock` stretches the time of `trace`.
     """
     from scipy.interpolate import CubicSpline
 
-    at = found.time * clock
+    at = trace.time * clock
     at = at[at <= min(end, float(model.time[-1]))]
-    share = math.sin(model.case.cylinder.alpha) / math.sin(found.case.cylinder.alpha)
-    own, other = lean(found)[: len(at)], share * lean(model)
-    if not np.isfinite(found.rolling_angle).any():
-        own, other = np.abs(own), np.abs(other)
-    return np.asarray(np.abs(own - CubicSpline(model.time, other)(at)), dtype=np.float64)
+    share = math.sin(model.case.cylinder.alpha) / math.sin(trace.case.cylinder.alpha)
+    lean_of_trace, other = lean(trace)[: len(at)], share * lean(model)
+    if not np.isfinite(trace.rolling_angle).any():
+        lean_of_trace, other = np.abs(lean_of_trace), np.abs(other)
+    return np.asarray(np.abs(lean_of_trace - CubicSpline(model.time, other)(at)), dtype=np.float64)
 
 
 def turning_points(time: Array, tilt: Array, angle: Array) -> Array:

@@ -53,16 +53,16 @@ def rocking(subject: Subject, support: str) -> Iterator[Result]:
 def stored_energy(subject: Subject, support: str) -> Iterator[Result]:
     """Energy of a release is constant and includes that of the tendon, P0 e + kt e^2/2."""
     for of, case in _releases(subject).items():
-        found = subject.simulate(case, support)
+        trace = subject.simulate(case, support)
         bound = subject.tolerance_bound(10.0, "no loss; near passes magnify the error of a step")
         yield at_most(
-            f"energy of a release with a tendon, {of}", np.ptp(found.energy) / found.energy[0], bound
+            f"energy of a release with a tendon, {of}", np.ptp(trace.energy) / trace.energy[0], bound
         )
         if not {"tilt_rate", "rolling_rate"} <= subject.knows:
             continue
-        state = found.tilt, found.rolling_angle, found.tilt_rate, found.rolling_rate
+        state = trace.tilt, trace.rolling_angle, trace.tilt_rate, trace.rolling_rate
         stated = energy(shape_of(case.cylinder, TENDON), *state)
-        off = largest(found.energy - stated) / found.energy[0]
+        off = largest(trace.energy - stated) / trace.energy[0]
         yield at_most(f"stated energy of a release with a tendon, {of}", off, bound)
 
 
@@ -74,13 +74,13 @@ def load_at_rest(subject: Subject, support: str) -> Iterator[Result]:
     bound = subject.tolerance_bound(1.0, "Newton's law", "weights")
     for of, release in _releases(subject).items():
         body = release.cylinder
-        found = subject.simulate(Case(body, steady([0.0, 0.0], 0.4), tendon=TENDON), support, sample_step=0.1)
+        trace = subject.simulate(Case(body, steady([0.0, 0.0], 0.4), tendon=TENDON), support, sample_step=0.1)
         base = [0.0, 0.0, 1.0 + TENDON.prestress / (1.0 + body.slab_mass_ratio)]
         name = "contact force at rest with a tendon" + ("" if of == "column" else f", {of}")
-        yield at_most(name, largest(found.contact_force[1:4] - base), bound)
-        if body.slab_mass_ratio and not np.isnan(found.top_contact_force).all():
+        yield at_most(name, largest(trace.contact_force[1:4] - base), bound)
+        if body.slab_mass_ratio and not np.isnan(trace.top_contact_force).all():
             top = [0.0, 0.0, 1.0 + TENDON.prestress / body.slab_mass_ratio]
-            off = largest(found.top_contact_force[1:4] - top)
+            off = largest(trace.top_contact_force[1:4] - top)
             yield at_most("contact force on a slab at rest with a tendon", off, bound)
 
 
@@ -91,9 +91,9 @@ def raised_uplift(subject: Subject, support: str) -> Iterator[Result]:
         shape = shape_of(case.cylinder, TENDON)
         threshold = _couple(shape, upright) / shape.h
         motion = GroundMotion(np.outer([0.0, 1.5], [threshold, 0.0]), 1.5)
-        found = subject.simulate(Case(case.cylinder, motion, tendon=TENDON), support, sample_step=0.05)
+        trace = subject.simulate(Case(case.cylinder, motion, tendon=TENDON), support, sample_step=0.05)
         bound = subject.tolerance_bound(50.0, "closed form, to some steps", "s")
-        yield at_most(f"time of uplift with a tendon, {of}", abs(found.uplift_time - 1.0), bound)
+        yield at_most(f"time of uplift with a tendon, {of}", abs(trace.uplift_time - 1.0), bound)
 
 
 def _couple(shape: Shape, tilt: float) -> float:
@@ -110,7 +110,7 @@ def balance(subject: Subject, support: str) -> Iterator[Result]:
         low, high = (middle, high) if _couple(shape, middle) > 0.0 else (low, middle)
     for word, factor, expected in (("within", 1.0 - _NEAR, False), ("beyond", 1.0 + _NEAR, True)):
         start = InitialState(factor * low)
-        found = subject.simulate(Case(PIER, initial=start, duration=10.0, tendon=TENDON), support)
-        wrong = float((found.outcome == "overturned") is not expected)
+        trace = subject.simulate(Case(PIER, initial=start, duration=10.0, tendon=TENDON), support)
+        wrong = float((trace.outcome == "overturned") is not expected)
         bound = Bound(0.0, "where the couple of weight and tendon changes its sign")
-        yield at_most(f"end of a release 0.5 % {word} the balance", wrong, bound, note=found.outcome)
+        yield at_most(f"end of a release 0.5 % {word} the balance", wrong, bound, note=trace.outcome)

@@ -250,12 +250,12 @@ def trajectories(traces: Sequence[Trace], *, support: str = RECESS, tolerance: f
         azimuth = poses.rolling_angle if "azimuth" in poses.given else None
         columns = {"time": poses.time, "tilt": poses.tilt, "azimuth": azimuth}
         answers[fingerprint(trace.case)] = trace_of(columns, trace.case, support)
-    told = all(np.isfinite(trace.rolling_angle).any() for trace in answers.values())
+    has_azimuths = all(np.isfinite(trace.rolling_angle).any() for trace in answers.values())
     return Subject(
         label=", ".join(str(trace.run.engine) for trace in traces),
         source=lambda case, support, *, sample_step: answers[fingerprint(case)],
         supports=(support,),
-        knows=frozenset({"tilt", "rolling_angle"} if told else {"tilt"}),
+        knows=frozenset({"tilt", "rolling_angle"} if has_azimuths else {"tilt"}),
         features=frozenset({UPLIFT, REFERENCE, FILES}),
         tolerance=tolerance,
         repeatability=tolerance,
@@ -278,12 +278,12 @@ def load_model(name: str) -> Callable[[Case, str], object]:
     if str(Path.cwd()) not in sys.path:
         sys.path.insert(0, str(Path.cwd()))
     try:
-        found = getattr(importlib.import_module(module), function)
+        loaded = getattr(importlib.import_module(module), function)
     except (ImportError, AttributeError) as error:
         raise ValueError(f"the model {name} cannot be imported: {error}") from error
-    if not callable(found):
-        raise ValueError(f"the model {name} must be callable, got {type(found).__name__}")  # noqa: TRY004 bad input
-    model: Callable[[Case, str], object] = found
+    if not callable(loaded):
+        raise ValueError(f"the model {name} must be callable, got {type(loaded).__name__}")  # noqa: TRY004 bad input
+    model: Callable[[Case, str], object] = loaded
     return model
 
 

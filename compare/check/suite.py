@@ -84,8 +84,8 @@ class SuiteRuns:
         """Return the trace of each job."""
         keys = [fingerprint([job.case, job.run]) for job in jobs]
         missing = {key: job for key, job in zip(keys, jobs, strict=True) if key not in self.kept}
-        made = simulate_all(list(missing.values()), workers=self.workers, progress=self.progress)
-        self.kept.update(zip(missing, made, strict=True))
+        traces = simulate_all(list(missing.values()), workers=self.workers, progress=self.progress)
+        self.kept.update(zip(missing, traces, strict=True))
         return [self.kept[key] for key in keys]
 
     def simulate(self, case: Case, run: Run, **options: float) -> Trace:
@@ -227,16 +227,16 @@ def _result_by_step(
     grown = "" if clean else " and what as large an error grows to"
     reason = f"{CLEAN if clean else WIDE:g} times what the step changes{grown}, and contact"
     bound = Bound(min(most, AGREEMENT) if clean else most, reason, "alpha")
-    found = at_most(name, rms(apart[:count][within]), bound, note=f"to {until:.3g} s")
-    if not found.failed:
-        return found
+    result = at_most(name, rms(apart[:count][within]), bound, note=f"to {until:.3g} s")
+    if not result.failed:
+        return result
     if clean and most > AGREEMENT:
         part = f"time step of {job.run.engine}"
         fits = trace.time_step * AGREEMENT / most
         advice = f"the trace changes by {step:.1e} alpha with its step: try a time step of {fits:.1g} s"
     else:
         part, advice = likely_cause(runs, job, model, trace, until=until)
-    return dataclasses.replace(found, cause=part, note=f"{found.note}; {advice}")
+    return dataclasses.replace(result, cause=part, note=f"{result.note}; {advice}")
 
 
 def _by_step(runs: SuiteRuns, job: Job, trace: Trace) -> Array | None:

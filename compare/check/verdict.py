@@ -115,11 +115,11 @@ def compare(old: Iterable[Entry], new: Iterable[Sample]) -> FingerprintVerdict:
     """Verdict on two fingerprints; the entries of `new` are computed only up to the first change."""
     verdict = FingerprintVerdict(SAME)
     for one, other in zip(old, new, strict=True):
-        found = compare_entries(one, other)
-        if found.word == CHANGED:
-            return found
+        case_verdict = compare_entries(one, other)
+        if case_verdict.word == CHANGED:
+            return case_verdict
         if verdict.word == SAME:
-            verdict = found
+            verdict = case_verdict
     return verdict
 
 

@@ -222,17 +222,17 @@ class Comparison(Results, kind="comparison", findings_file="report.json"):
             If they cannot be read.
         """
         try:
-            found = cls(
+            comparison = cls(
                 tables=_of_today(stored.tables(), stored.manifest.versions.get("rockwobble", "(not stated)")),
                 facts={"inputs": stored.manifest.inputs} | plain_json.loads(stored.content(_FACTS)),
                 manifest=stored.manifest,
             )
             # loaded to show that each is undamaged
-            _ = found.budgets if found.facts["budgets"] else found.traces
+            _ = comparison.budgets if comparison.facts["budgets"] else comparison.traces
         except (ValueError, KeyError) as error:
             why = str(error).partition("\n")[0]
             raise ValueError(f"{stored.folder} holds a comparison that cannot be read: {why}") from None
-        return found
+        return comparison
 
     def _repr_html_(self) -> str:
         names = ["case", "run", "reference", "outcome", "peak_tilt", "tilt_rms_relative", "agreement_time"]

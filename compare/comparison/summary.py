@@ -158,11 +158,11 @@ def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
 
 
 def _divergence(trial: Trace, agreement: Agreement, prediction: Prediction) -> str:
-    found = verdict(agreement.length, agreement.diverged, prediction.length, prediction.reason)
-    if found != "earlier":
-        return found if agreement.tested else "too little motion"
+    outcome = verdict(agreement.length, agreement.diverged, prediction.length, prediction.reason)
+    if outcome != "earlier":
+        return outcome if agreement.tested else "too little motion"
     # no reduced model has walls, so none predicts their effect
-    return "after it touched a wall" if trial.first("wall_contact") <= agreement.end else found
+    return "after it touched a wall" if trial.first("wall_contact") <= agreement.end else outcome
 
 
 def external_row(
@@ -179,7 +179,7 @@ def external_row(
     Its uplift is compared as its samples show it: see `external.verdict.uplift_differences`. Its peak is
     compared with that of the reference while the file lasts.
     """
-    found = judge(trial, reference, case)
+    verdict = judge(trial, reference, case)
     row = summary_row(
         case,
         name,
@@ -188,13 +188,13 @@ def external_row(
         trial,
         prediction=close_pass(reference, trial.contact_resolution, case.length),
         until=until,
-        allowance=found["tilt_bound"] - AGREEMENT,
+        allowance=verdict["tilt_bound"] - AGREEMENT,
     )
     tilts = np.vstack([np.column_stack([reference.time, reference.tilt]), reference.extrema[:, :2]])
     covered = (tilts[:, 0] >= trial.time[0]) & (tilts[:, 0] <= trial.time[-1])
     largest = float(np.max(tilts[covered, 1], initial=0.0))
     row["peak_tilt_difference"] = (trial.peak_tilt - largest) / case.cylinder.alpha
-    return row | found
+    return row | verdict
 
 
 def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
@@ -281,13 +281,13 @@ def _difference(
     whole = make_pair(cylinder, reference, trial, until=case.length)  # a fall after it multiplies differences
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
     broken = "failed" in (trial.outcome, reference.outcome)
-    found = agreement_time(whole, broken=broken, allowance=allowance)
+    agreement = agreement_time(whole, broken=broken, allowance=allowance)
     columns: Row = {
         "tilt_rms": tilt_rms(window),
         "tilt_rms_relative": tilt_rms_relative(window),
         "contact_rms": contact_rms(window),
         "peak_tilt_difference": (trial.peak_tilt - reference.peak_tilt) / cylinder.alpha,
-        "agreement_time": found.length,
-        "diverged": found.diverged,
+        "agreement_time": agreement.length,
+        "diverged": agreement.diverged,
     }
-    return whole, found, columns
+    return whole, agreement, columns

@@ -65,23 +65,23 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
         external_motion(trajectory),
         measurement(trajectory),
     )
-    found = model.difference(motion)
+    residual = model.difference(motion)
     uplift = dict(
         zip(("uplift_time", "uplift_direction"), uplift_differences(trajectory, reference), strict=True)
     )
     later = [name for name, part in uplift.items() if part is not None and part.differs]
-    parts = (("azimuth", found.azimuth, motion.lean), ("path", found.path, motion.path))
+    parts = (("azimuth", residual.azimuth, motion.lean), ("path", residual.path, motion.path))
     row: Row = NO_VERDICT | {
-        "differs_in": (*found.differs_in, *later),
+        "differs_in": (*residual.differs_in, *later),
         "not_compared": tuple(name for name, part, _ in parts if part is None),
         "not_given": tuple(name for name, _, given in parts if given is None),
-        "tilt_bound": found.tilt.bound,
+        "tilt_bound": residual.tilt.bound,
         "noise": source.poses.noise / case.cylinder.alpha,
     }
     for name, part in uplift.items():
         if part is not None:
             row |= {f"{name}_difference": part.size, f"{name}_uncertainty": part.bound}
-    for name, part in {"azimuth": found.azimuth, "path": found.path, "twist": found.twist}.items():
+    for name, part in {"azimuth": residual.azimuth, "path": residual.path, "twist": residual.twist}.items():
         if part is not None:
             size = part.size if name == "path" else math.degrees(part.size)
             row |= {f"{name}_rms": size, f"{name}_differs_from": part.first_time}
@@ -93,10 +93,10 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
             return None
         return external_motion(other)
 
-    explained = next(explanations(source.table.values, read, model), None) if found.differs_in else None
+    explained = next(explanations(source.table.values, read, model), None) if residual.differs_in else None
     mistakes: tuple[Mistake, ...] = explained.mistakes if explained else ()
-    left = explained.left if explained else found
-    if found.tilt.differs and left.tilt.differs:  # judged before passes
+    left = explained.left if explained else residual
+    if residual.tilt.differs and left.tilt.differs:  # judged before passes
         lost, without = losses(motion, model, reference, case)
         mistakes, left = (*lost, *mistakes), without if len(lost) > 1 and not mistakes else left
     if mistakes:

@@ -154,14 +154,14 @@ def _finite_end(trace: Trace) -> float:
     return float(trace.time[count - 1]) if count else -math.inf
 
 
-def _resample(own: FloatArray, values: FloatArray, time: FloatArray) -> FloatArray:
-    """Values at the times `own` interpolated linearly to the times `time`."""
+def _resample(times: FloatArray, values: FloatArray, time: FloatArray) -> FloatArray:
+    """Values at the times `times` interpolated linearly to those of `time`."""
     count = len(time)
-    if len(own) >= count and bool(np.all(np.abs(own[:count] - time) < _SAME_TIME)):
+    if len(times) >= count and bool(np.all(np.abs(times[:count] - time) < _SAME_TIME)):
         return values[:count]
     if values.ndim == 1:
-        return np.interp(time, own, values)
-    return np.column_stack([np.interp(time, own, column) for column in values.T])
+        return np.interp(time, times, values)
+    return np.column_stack([np.interp(time, times, column) for column in values.T])
 
 
 def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
@@ -506,11 +506,11 @@ def _sampled_and_mean(
 ) -> tuple[FloatArray, FloatArray]:
     """Acceleration at the times `time`, and its exact mean between each two of them [m/s^2]."""
     # linear between samples, zero after the last: one more knot at the jump
-    own = np.arange(len(samples)) * time_step
-    own = np.append(own, np.nextafter(own[-1], math.inf))
+    times = np.arange(len(samples)) * time_step
+    times = np.append(times, np.nextafter(times[-1], math.inf))
     values = np.append(samples, 0.0)
-    knots = np.union1d(own, time)
-    at_knots = np.interp(knots, own, values)
+    knots = np.union1d(times, time)
+    at_knots = np.interp(knots, times, values)
     impulse = np.concatenate([[0.0], np.cumsum(0.5 * (at_knots[1:] + at_knots[:-1]) * np.diff(knots))])
     mean = np.diff(np.interp(time, knots, impulse)) / np.diff(time)
-    return np.interp(time, own, values), mean
+    return np.interp(time, times, values), mean

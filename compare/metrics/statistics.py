@@ -207,8 +207,8 @@ def signed_rank_p(logarithms: Array) -> float:
     sums[0] = 1.0
     for rank in ranks:
         sums = 0.5 * (sums + np.concatenate([np.zeros(rank), sums[:-rank]]))
-    found = ranks[differs > 0.0].sum()
-    return min(2.0 * float(min(sums[: found + 1].sum(), sums[found:].sum())), 1.0)
+    statistic = ranks[differs > 0.0].sum()
+    return min(2.0 * float(min(sums[: statistic + 1].sum(), sums[statistic:].sum())), 1.0)
 
 
 def mcnemar_p(only: int, only_there: int) -> float:
@@ -285,6 +285,6 @@ def adjusted(probabilities: Array) -> Array:
     """
     order = np.argsort(probabilities, kind="stable")
     steps = np.maximum.accumulate(probabilities[order] * np.arange(len(order), 0, -1))
-    found = np.empty(len(order))
-    found[order] = np.minimum(steps, 1.0)
-    return found
+    p_values = np.empty(len(order))
+    p_values[order] = np.minimum(steps, 1.0)
+    return p_values

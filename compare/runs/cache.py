@@ -138,7 +138,7 @@ def open_cache(
         If nothing can be written there, or another process has it open.
     """
     path = Path(folder) / CACHE / kind
-    made = [each for each in (path, *path.parents) if not each.exists()]
+    created = [each for each in (path, *path.parents) if not each.exists()]
     try:
         with sole_writer(path):
             remove_leftovers(path)
@@ -146,8 +146,8 @@ def open_cache(
             yield cache
             cache.complete(alone=claim_on(folder) is not None)
     except BaseException:
-        if made and not any(path.glob("*.parquet")):
-            remove_folders(made, without=(_PLAN,))
+        if created and not any(path.glob("*.parquet")):
+            remove_folders(created, without=(_PLAN,))
         raise
 
 

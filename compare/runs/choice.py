@@ -201,7 +201,7 @@ def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run]
     tuple
         The runs, a list of Run, and the lines, a list of str.
     """
-    found, said = list[Run](), dict[str, str]()
+    possible, said = list[Run](), dict[str, str]()
     for run in runs:
         name, other = run.engine, None
         if name is not None and name not in named and engine_fault(name):
@@ -212,9 +212,9 @@ def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run]
             elif other is not None or name in standard_engines():
                 said.setdefault(name, left_out(name))
                 continue
-        if run not in found:
-            found.append(run)
-    return found, list(said.values())
+        if run not in possible:
+            possible.append(run)
+    return possible, list(said.values())
 
 
 def reserved_engines() -> dict[str, str]:
@@ -335,12 +335,12 @@ def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tu
     """
     engines = [name for name in available_engines() if not _unable(name, cases)]
     asked = default_runs(engines, supports or MODELLED)
-    found = [run for run in asked if run.support in find_engine(run.engine_name).supports]
-    if not found:
+    runs = [run for run in asked if run.support in find_engine(run.engine_name).supports]
+    if not runs:
         raise ValueError(
             f"no installed engine has the support {' or '.join(supports or MODELLED)} for this case"
         )
-    return tuple(found)
+    return tuple(runs)
 
 
 def unable_engines(cases: Sequence[Case]) -> tuple[str, ...]:

@@ -130,9 +130,9 @@ def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> T
         known = _model_settings()
         for name in run.settings.keys() - known:
             raise ValueError(f"a reduced model has the settings {', '.join(sorted(known))}, got {name!r}")
-        found = reduced.simulate(case, support=run.support, sample_step=sample_step, **run.settings)
-        _ = found.late  # computed here, so that it is pickled with the trace
-        return found
+        trace = reduced.simulate(case, support=run.support, sample_step=sample_step, **run.settings)
+        _ = trace.late  # computed here, so that it is pickled with the trace
+        return trace
     from rockwobble import multibody
 
     return multibody.simulate(
@@ -192,7 +192,7 @@ def simulate_all(
     >>> [trace.outcome for trace in simulate_all(jobs, workers=1)]
     ['stands', 'stands']
     """
-    found = run_tasks(
+    traces = run_tasks(
         run_job,
         jobs,
         workers=workers,
@@ -204,7 +204,7 @@ def simulate_all(
     )
     return [
         lost_trace(job.case, job.run, result.why) if isinstance(result, FailedTask) else result
-        for job, result in zip(jobs, found, strict=True)
+        for job, result in zip(jobs, traces, strict=True)
     ]
 
 

@@ -227,8 +227,8 @@ def run_tasks(
     results: dict[int, R | FailedTask] = {}
     if cache is not None:
         cache.expect(len(tasks))
-        found = {index: cache.find(task) for index, task in enumerate(tasks)}
-        results |= {index: result for index, result in found.items() if result is not None}
+        finished = {index: cache.find(task) for index, task in enumerate(tasks)}
+        results |= {index: result for index, result in finished.items() if result is not None}
     costs = [1.0 if cost is None else cost(task) for task in tasks]
     waiting = [index for index in reversed(range(len(tasks))) if index not in results]
     waiting.sort(key=lambda index: costs[index])  # the longest are taken first, from the end

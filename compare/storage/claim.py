@@ -75,7 +75,7 @@ def claim_folder(folder: str | Path, *, plan: str, command: str, overwrite: bool
         If the folder holds results of another plan, another process writes to it, or nothing can be written.
     """
     path = require_writable(folder)
-    made = [each for each in (path, *path.parents) if not each.exists()]
+    created = [each for each in (path, *path.parents) if not each.exists()]
     try:
         with sole_writer(path):
             if not overwrite and (there := _of_others(path, plan, command)):
@@ -89,7 +89,7 @@ def claim_folder(folder: str | Path, *, plan: str, command: str, overwrite: bool
             finally:
                 _settle(path, plan, command)
     finally:
-        remove_folders(made)
+        remove_folders(created)
 
 
 def _of_others(path: Path, plan: str, command: str) -> list[str]:

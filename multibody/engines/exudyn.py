@@ -193,10 +193,10 @@ class _ExudynStepper:
                     referenceCoordinates=pose, initialCoordinates=[0.0] * 7, initialVelocities=rates
                 )
             )
-            made = system.AddObject(
+            body = system.AddObject(
                 items.ObjectRigidBody(mass=mass, inertia=[*inertia, 0.0, 0.0, 0.0], nodeNumber=node)
             )
-            centre = system.AddMarker(items.MarkerBodyMass(bodyNumber=made))
+            centre = system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
             fall = [0.0, 0.0, -scene.gravity]
             system.AddLoad(items.LoadMassProportional(markerNumber=centre, loadVector=fall))
             if self._excited:
@@ -204,7 +204,7 @@ class _ExudynStepper:
                     markerNumber=centre, loadVectorUserFunction=self._excitation
                 )
                 system.AddLoad(push)
-            return int(node), int(made)
+            return int(node), int(body)
 
         def add_rim(plane: int, up: float) -> int:
             """Let the base, or the top, roll on the plane of a body; return the marker of that body."""

@@ -130,14 +130,14 @@ def test_a_summary_uses_both_bounds_and_the_time_of_the_run(cylinder, make_trace
         expected = Prediction(length=within, reason="growth")
         return summary_row(reference.case, "model", reference, "made", trial, prediction=expected)
 
-    found = row(rest, 3.0)
-    assert (found["diverged"], found["agreement_time"]) == (False, 10.0)  # within 1 % of alpha
-    assert (found["tolerance"], found["reference_uplift_time"]) == (pytest.approx(7.5e-4, rel=1e-3), 2.0)
+    summary = row(rest, 3.0)
+    assert (summary["diverged"], summary["agreement_time"]) == (False, 10.0)  # within 1 % of alpha
+    assert (summary["tolerance"], summary["reference_uplift_time"]) == (pytest.approx(7.5e-4, rel=1e-3), 2.0)
     # a sine reaches a tenth of its peak at arcsin(0.1)
-    assert found["left_tolerance"]
-    assert found["within_tolerance_until"] == pytest.approx(2.0 + math.asin(math.sqrt(0.1)), abs=SAMPLE)
-    assert found["predicted_until"] == 5.0
-    assert found["divergence"] == "earlier"
+    assert summary["left_tolerance"]
+    assert summary["within_tolerance_until"] == pytest.approx(2.0 + math.asin(math.sqrt(0.1)), abs=SAMPLE)
+    assert summary["predicted_until"] == 5.0
+    assert summary["divergence"] == "earlier"
     assert row(rest, 0.3)["divergence"] == "too little motion"
     assert row(reference, 2.0)["divergence"] == "later"
     assert row(reference, 0.9)["divergence"] == "much later"

@@ -67,22 +67,22 @@ def budget(engine, limit: Limit, cylinder: Cylinder = PIER) -> ErrorBudget:
 
 
 def test_the_parts_add_up_at_every_sample(engine, limit):
-    found = budget(engine, limit)
-    total = found.model_form + found.numerics + found.unexplained
-    assert np.allclose(total, found.whole, rtol=0.0, atol=ROUNDING)
+    parts = budget(engine, limit)
+    total = parts.model_form + parts.numerics + parts.unexplained
+    assert np.allclose(total, parts.whole, rtol=0.0, atol=ROUNDING)
 
 
 def test_the_error_of_a_step_is_numerical_and_not_unexplained(engine, limit):
-    found = budget(engine, limit)
-    assert found.rms("numerics") > 1e-7  # far above the 1e-10 of the reduced model
-    assert found.columns()["unexplained_share"] < 0.01  # error of third order in the step
+    parts = budget(engine, limit)
+    assert parts.rms("numerics") > 1e-7  # far above the 1e-10 of the reduced model
+    assert parts.columns()["unexplained_share"] < 0.01  # error of third order in the step
 
 
 def test_a_coarser_step_increases_numerics_alone(engine, limit):
     coarse = run(CASE, 2.0 * STEP)
-    found, coarser = budget(engine, limit), budget(coarse, limit)
-    assert coarser.rms("numerics") > 1.8 * found.rms("numerics")  # first order doubles, less 10 %
-    assert coarser.rms("unexplained") == found.rms("unexplained")
+    finer, coarser = budget(engine, limit), budget(coarse, limit)
+    assert coarser.rms("numerics") > 1.8 * finer.rms("numerics")  # first order doubles, less 10 %
+    assert coarser.rms("unexplained") == finer.rms("unexplained")
 
 
 def test_an_error_of_half_a_per_cent_in_size_is_unexplained(engine, limit):
@@ -99,10 +99,10 @@ def test_the_difference_of_two_models_is_model_form(engine, limit):
         reduced.simulate(Case(PIER, initial=CASE.initial, duration=2.0), support=m, rtol=1e-11)
         for m in ("flat", "recess")
     ]
-    found = error_budget(engine, *models, limit, WHOLE_RUN)
+    parts = error_budget(engine, *models, limit, WHOLE_RUN)
     expected = (models[1].tilt - models[0].tilt) / PIER.alpha
-    assert np.allclose(found.model_form, expected, rtol=0.0, atol=ROUNDING)
-    assert found.rms("unexplained") == budget(engine, limit).rms("unexplained")
+    assert np.allclose(parts.model_form, expected, rtol=0.0, atol=ROUNDING)
+    assert parts.rms("unexplained") == budget(engine, limit).rms("unexplained")
 
 
 def made_up_tilts(steps, first: float, second: float) -> list[np.ndarray]:
@@ -133,10 +133,10 @@ def test_the_end_of_the_agreement_is_excluded(make_trace):
     model = make_trace(TIME, np.full_like(TIME, 0.1))
     late = make_trace(TIME, 0.1 + np.where(TIME > 1.6 + 1e-9, 1e-3, 0.0))
     limit = Limit(time=TIME, tilt=late.tilt, error=np.zeros_like(TIME), steps=(1.0,), order=math.nan)
-    found = error_budget(late, model, model, limit, WHOLE_RUN)
-    assert found.covered == pytest.approx(1.6)
-    assert found.rms("whole") == 0.0
-    assert found.whole[-1] > 0.0
+    parts = error_budget(late, model, model, limit, WHOLE_RUN)
+    assert parts.covered == pytest.approx(1.6)
+    assert parts.rms("whole") == 0.0
+    assert parts.whole[-1] > 0.0
 
 
 # RMS of numerics, unexplained, model form and limit error; measured order; time of an unresolved pass [s]
@@ -154,7 +154,7 @@ def test_the_end_of_the_agreement_is_excluded(make_trace):
 )
 def test_unknown_differences_have_no_budget(parts, order, unresolved, reason) -> None:
     numerics, unexplained, model_form, error = (np.full_like(TIME, part) for part in parts)
-    found = ErrorBudget(
+    unsplit = ErrorBudget(
         time=TIME,
         whole=numerics + unexplained + model_form,
         numerics=numerics,
@@ -166,8 +166,8 @@ def test_unknown_differences_have_no_budget(parts, order, unresolved, reason) ->
         order=order,
         unresolved=unresolved,
     )
-    assert found.not_split == reason
-    columns = found.columns()
+    assert unsplit.not_split == reason
+    columns = unsplit.columns()
     assert columns["not_split"] == reason
     stated = [columns[name] for name in ("numerics_rms", "unexplained_rms", "unexplained_share")]
     assert np.isnan(stated).tolist() == [bool(reason)] * 3
@@ -195,8 +195,8 @@ def test_the_finer_runs_end_with_the_agreement(engine):
 def test_numerics_of_an_extrapolated_run_are_the_error_of_its_limit():
     runs = [Run("mujoco", "recess", STEP), Run("mujoco", "recess", "extrapolated", finest_step=STEP / 2)]
     case = dataclasses.replace(CASE, duration=1.0)
-    found = comparison(Suite([case], runs), runs=runs, budget=True, workers=1)
-    plain, extrapolated = found.budget_rms.to_dict("records")
+    results = comparison(Suite([case], runs), runs=runs, budget=True, workers=1)
+    plain, extrapolated = results.budget_rms.to_dict("records")
     # both use the same finest run, at an eighth of the step
     assert extrapolated["numerics_rms"] < 0.1 * plain["numerics_rms"]
     assert extrapolated["unexplained_rms"] == pytest.approx(plain["unexplained_rms"], abs=1e-8)
@@ -210,8 +210,8 @@ def test_the_loss_of_a_base_that_lands_flat_is_model_form():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(pier, initial=InitialState(0.04 * pier.alpha), duration=0.5, name="release")
     run = Run("mujoco", "recess", 2e-4)
-    found = comparison(Suite([case], [run]), runs=[run], budget=True, workers=1)
-    (row,) = found.budget_rms.to_dict("records")
+    results = comparison(Suite([case], [run]), runs=[run], budget=True, workers=1)
+    (row,) = results.budget_rms.to_dict("records")
     assert row["whole_rms"] > WORTH_EXPLAINING
     assert row["model_form_rms"] == pytest.approx(row["whole_rms"], rel=0.1)
     # 1 %: the step is twice the default

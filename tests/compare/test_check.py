@@ -122,11 +122,11 @@ def right() -> Subject:
 
 @pytest.mark.parametrize("group", [name for name in GROUPS if name not in ("agreement", "order", "protocol")])
 def test_the_reduced_models_pass_all_checks(right: Subject, group: str) -> None:
-    found = list(run_checks(right, [group]))
-    assert found
-    assert len({result.name for result in found}) == len(found)
-    assert [f"{each.name}: {each.value}, {each.note}" for each in found if each.outcome != PASSED] == []
-    assert all(each.group == group and each.subject == "reduced model" and each.reason for each in found)
+    results = list(run_checks(right, [group]))
+    assert results
+    assert len({result.name for result in results}) == len(results)
+    assert [f"{each.name}: {each.value}, {each.note}" for each in results if each.outcome != PASSED] == []
+    assert all(each.group == group and each.subject == "reduced model" and each.reason for each in results)
 
 
 @pytest.mark.slow
@@ -188,8 +188,8 @@ def test_a_subject_that_raises_fails_its_checks_and_others_run(right: Subject) -
     def source(case: Case, *_: Any, **__: Any) -> Trace:
         raise ZeroDivisionError("division by zero")
 
-    found = list(run_checks(dataclasses.replace(right, source=source), ["trace"]))
-    assert [(each.failed, each.note) for each in found] == [(True, "ZeroDivisionError: division by zero")] * 3
+    items = list(run_checks(dataclasses.replace(right, source=source), ["trace"]))
+    assert [(each.failed, each.note) for each in items] == [(True, "ZeroDivisionError: division by zero")] * 3
 
 
 PERIOD, RECORD = "period of a release, tan alpha = 0.2", "tilt and azimuth under El Centro"
@@ -201,10 +201,10 @@ def ours(case: Case, support: str) -> Trace:
 
 def without(*names: str) -> Callable[[Case, str], dict[str, Any]]:
     def model(case: Case, support: str) -> dict[str, Any]:
-        found = ours(case, support)
-        columns = {"time": found.time, "tilt": found.tilt, "azimuth": found.rolling_angle}
+        trace = ours(case, support)
+        columns = {"time": trace.time, "tilt": trace.tilt, "azimuth": trace.rolling_angle}
         return {
-            name: column for name, column in {**columns, "energy": found.energy}.items() if name not in names
+            name: column for name, column in {**columns, "energy": trace.energy}.items() if name not in names
         }
 
     return model
@@ -216,12 +216,12 @@ def outcomes(results: list[Result], outcome: str) -> set[str]:
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_a_right_external_model_passes_tightly(support: str) -> None:
-    found = rw.check(model=without(), support=support, tolerance=1e-5).results
-    assert outcomes(found, FAILED) == set()
-    assert len(outcomes(found, PASSED)) > 12
+    results = rw.check(model=without(), support=support, tolerance=1e-5).results
+    assert outcomes(results, FAILED) == set()
+    assert len(outcomes(results, PASSED)) > 12
     # a check of a missing field states it
     lacking = {"work of the ground", "uplift", "force at rest", "falls", "turning", "fields", "place"}
-    assert outcomes(found, NOT_RUN) == lacking
+    assert outcomes(results, NOT_RUN) == lacking
     fewer = rw.check(model=without("azimuth", "energy"), support=support, only=["exact", "conserved"]).results
     assert {"free motion", "work of the ground"} == outcomes(fewer, NOT_RUN)
     assert (PERIOD in outcomes(fewer, PASSED)) == (support == "recess")
@@ -232,14 +232,14 @@ def of_another_size(case: Case, support: str) -> Trace:
 
 
 def left_handed(case: Case, support: str) -> dict[str, Any]:
-    found = ours(case, support)
-    azimuth = found.rolling_angle if case.motion is None else -found.rolling_angle
-    return {"time": found.time, "tilt": found.tilt, "azimuth": azimuth}
+    trace = ours(case, support)
+    azimuth = trace.rolling_angle if case.motion is None else -trace.rolling_angle
+    return {"time": trace.time, "tilt": trace.tilt, "azimuth": azimuth}
 
 
 def restless(case: Case, support: str) -> dict[str, Any]:
-    found = ours(case, support)
-    return {"time": found.time, "tilt": np.maximum(found.tilt, 1e-3)}
+    trace = ours(case, support)
+    return {"time": trace.time, "tilt": np.maximum(trace.tilt, 1e-3)}
 
 
 @pytest.mark.slow
@@ -254,14 +254,14 @@ def restless(case: Case, support: str) -> dict[str, Any]:
 def test_a_wrong_external_model_fails_at_its_fault(
     model: Callable[[Case, str], Any], fails: set[str], holds: set[str]
 ) -> None:
-    found = rw.check(model=model)
-    assert fails <= outcomes(found.results, FAILED)
-    assert holds <= outcomes(found.results, PASSED)
-    assert list(found.tables["results"]["name"]) == [each.name for each in found.results]
-    assert found.headline()["FAILED"] == len(found.failures) == len(outcomes(found.results, FAILED))
-    assert not found.passed
-    assert repr(found).startswith("Checks(")
-    assert f"{found.failures[0].name} " in repr(found)
+    checks = rw.check(model=model)
+    assert fails <= outcomes(checks.results, FAILED)
+    assert holds <= outcomes(checks.results, PASSED)
+    assert list(checks.tables["results"]["name"]) == [each.name for each in checks.results]
+    assert checks.headline()["FAILED"] == len(checks.failures) == len(outcomes(checks.results, FAILED))
+    assert not checks.passed
+    assert repr(checks).startswith("Checks(")
+    assert f"{checks.failures[0].name} " in repr(checks)
 
 
 def test_a_model_that_cannot_run_a_case_leaves_the_others_running() -> None:
@@ -270,13 +270,13 @@ def test_a_model_that_cannot_run_a_case_leaves_the_others_running() -> None:
             raise NotImplementedError("it must be released")
         return ours(case, support)
 
-    found = rw.check(model=only_releases).results
-    notes = {each.name: each.note for each in found if "must be released" in each.note}
+    results = rw.check(model=only_releases).results
+    notes = {each.name: each.note for each in results if "must be released" in each.note}
     assert notes == dict.fromkeys(
         [f"{name}, recess" for name in ("stands", "frame", "scale", "statement", "ramp", "record")],
         "NotImplementedError: it must be released",
     )  # fmt: skip
-    assert "tilt and azimuth of a release" in outcomes(found, PASSED)
+    assert "tilt and azimuth of a release" in outcomes(results, PASSED)
 
 
 def test_a_model_that_returns_no_motion_is_reported() -> None:
@@ -287,9 +287,9 @@ def test_a_model_that_returns_no_motion_is_reported() -> None:
         ({"time": [0.0, 1.0], "tilt": [0.1]}, "as long as time"),
     ):
         model = external_model(lambda case, support, result=result: result)  # type: ignore[misc]
-        found = list(run_checks(model, ["exact"]))
-        assert found
-        assert all(each.outcome == NOT_RUN and reason in each.note for each in found)
+        results = list(run_checks(model, ["exact"]))
+        assert results
+        assert all(each.outcome == NOT_RUN and reason in each.note for each in results)
 
 
 def test_a_model_is_loaded_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -314,14 +314,14 @@ def checked(place: Path, trace: Trace, names: list[str], **given: Any) -> list[R
 @pytest.mark.parametrize("names", [ANGLES, ANGLES[:2], TURN], ids=["angles", "tilt", "quaternions"])
 def test_a_trajectory_is_compared_as_far_as_one_motion_allows(tmp_path: Path, names: list[str]) -> None:
     # at its own samples, 0.03 s apart: interpolation is less exact
-    found = checked(tmp_path, ours(RELEASE, "recess"), names, every=6, tolerance=1e-6)
-    assert outcomes(found, PASSED) == {"tilt at release", "tilt and azimuth up to 5 s", "peak tilt"}
-    assert len(found) == 3
+    results = checked(tmp_path, ours(RELEASE, "recess"), names, every=6, tolerance=1e-6)
+    assert outcomes(results, PASSED) == {"tilt at release", "tilt and azimuth up to 5 s", "peak tilt"}
+    assert len(results) == 3
 
 
 def test_a_trajectory_of_another_body_fails_and_one_without_tilt_is_refused(tmp_path: Path) -> None:
-    found = checked(tmp_path, of_another_size(RELEASE, "recess"), ANGLES)
-    assert outcomes(found, FAILED) == {"tilt and azimuth up to 5 s"}
+    results = checked(tmp_path, of_another_size(RELEASE, "recess"), ANGLES)
+    assert outcomes(results, FAILED) == {"tilt and azimuth up to 5 s"}
     with pytest.raises(ValueError, match="must have tilt, or qw, qx, qy and qz"):
         checked(tmp_path, ours(RELEASE, "recess"), ["time", *PLACE])
 
@@ -355,17 +355,17 @@ def test_the_wrong_number_is_named(name: str) -> None:
 
 @pytest.mark.slow
 def test_a_failure_names_its_cause_or_none() -> None:
-    found = rw.check(model=scaled("axial inertia", 1.05), tolerance=1e-5, only=["exact", "agreement"])
-    assert found.failures
-    assert {each.cause for each in found.failures} == {"axial inertia +5 %"}
+    checks = rw.check(model=scaled("axial inertia", 1.05), tolerance=1e-5, only=["exact", "agreement"])
+    assert checks.failures
+    assert {each.cause for each in checks.failures} == {"axial inertia +5 %"}
 
     def noisy(case: Case, support: str) -> dict[str, np.ndarray]:
         trace = reduced.simulate(case, support=support, sample_step=0.01)
         noise = 1e-3 * np.random.default_rng(3).normal(size=len(trace.time))
         return {"time": trace.time, "tilt": trace.tilt + noise, "azimuth": trace.rolling_angle}
 
-    found = rw.check(model=noisy, tolerance=1e-5, only=["agreement"])
-    assert {each.cause for each in found.failures} == {""}
+    checks = rw.check(model=noisy, tolerance=1e-5, only=["agreement"])
+    assert {each.cause for each in checks.failures} == {""}
 
 
 def kept_as(monkeypatch: pytest.MonkeyPatch, right: Subject, **changes: Any) -> baseline.Baseline:
@@ -382,19 +382,19 @@ def test_a_change_by_another_version_is_reported_and_no_failure(
     kept_as(monkeypatch, right, version="0.0.1", versions={"numpy": "1.0"})
     wrong = field("tilt", lambda tilt: tilt + 1e-6)(right)
     for model, outcome in ((right, PASSED), (wrong, NO_BASELINE)):
-        found = list(baseline.same_as_baseline(model, "recess"))
-        assert {each.outcome for each in found} == {outcome}
-        for each in found:
+        results = list(baseline.same_as_baseline(model, "recess"))
+        assert {each.outcome for each in results} == {outcome}
+        for each in results:
             assert each.note.startswith("the baseline is of reduced model 0.0.1, this is ")
             assert (f"numpy 1.0 -> {np.__version__}" in each.note) == (model is wrong)
 
 
 def test_a_subject_without_a_baseline_is_reported(right: Subject) -> None:
-    (found,) = baseline.same_as_baseline(dataclasses.replace(right, label="another"), "recess")
-    assert (found.outcome, found.note) == (NO_BASELINE, "no baseline for another")
+    (result,) = baseline.same_as_baseline(dataclasses.replace(right, label="another"), "recess")
+    assert (result.outcome, result.note) == (NO_BASELINE, "no baseline for another")
     for given in ({"time_step": 1e-4}, {"iterations": 60}):
-        (found,) = baseline.same_as_baseline(engine("mujoco", **given), "recess")
-        assert (found.outcome, found.note) == (NOT_RUN, "kept at the default time step and settings")
+        (result,) = baseline.same_as_baseline(engine("mujoco", **given), "recess")
+        assert (result.outcome, result.note) == (NOT_RUN, "kept at the default time step and settings")
 
 
 def test_an_update_stores_the_reason_and_names_the_changes(
@@ -412,10 +412,10 @@ def test_an_update_stores_the_reason_and_names_the_changes(
     older = kept_as(monkeypatch, right, version="0.0.1")
     assert baseline.baseline_changes(older, kept.fingerprint, right) == ["version 0.0.1, now "]
     text = baseline.updated_baseline(kept, new, right, reason=" a  new kernel ", date="2026-11-21")
-    found = json.loads(text)
-    assert found["fingerprint"] == list(new)
-    assert [each["reason"] for each in found["reasons"]][-1] == "a new kernel"
-    assert len(found["reasons"]) == len(kept.reasons) + 1
+    stored = json.loads(text)
+    assert stored["fingerprint"] == list(new)
+    assert [each["reason"] for each in stored["reasons"]][-1] == "a new kernel"
+    assert len(stored["reasons"]) == len(kept.reasons) + 1
     with pytest.raises(ValueError, match="a reason must be given"):
         baseline.updated_baseline(kept, new, right, reason="  ", date="2026-11-21")
 
@@ -434,8 +434,8 @@ def test_kinetic_energy_equals_the_vector_formula() -> None:
     for ratio in (0.0, 1.5):
         expected = kinetic_energy(body_of(CYLINDER, 9.81), state, ratio) / (1.0 + 2.0 * ratio)
         shape = lagrange.shape_of(WobblingFrame(CYLINDER, ratio))
-        found = lagrange.kinetic(shape, *one(theta, phi, theta_rate, phi_rate))[0]
-        assert found == pytest.approx(float(expected), rel=ROUNDING)
+        energy = lagrange.kinetic(shape, *one(theta, phi, theta_rate, phi_rate))[0]
+        assert energy == pytest.approx(float(expected), rel=ROUNDING)
 
 
 def test_accelerations_of_newton_and_euler_leave_no_residual() -> None:
@@ -446,8 +446,8 @@ def test_accelerations_of_newton_and_euler_leave_no_residual() -> None:
 
     def left(factor: float) -> list[float]:
         curves = one(factor * float(motion.theta), float(motion.phi))
-        found = lagrange.residuals(SHAPE, place, rates, curves, np.array([ground]))
-        return [float(abs(value[0])) for value in found]
+        residuals = lagrange.residuals(SHAPE, place, rates, curves, np.array([ground]))
+        return [float(abs(value[0])) for value in residuals]
 
     # rounding of differences 0.01 s apart, of energies of 60 m^2/s^2
     assert max(left(1.0)) < 1e-10

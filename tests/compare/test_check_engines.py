@@ -56,9 +56,9 @@ def test_an_installed_engine_passes_checks(name: str, group: str, monkeypatch: p
     if name not in standard_engines():  # first support, agreement groups of `check`
         subject = dataclasses.replace(subject, supports=subject.supports[:1])
         chosen = chosen[:1] if group == "agreement" else chosen
-    found = [result for each in chosen if each.applies(subject) for result in each.run(subject)]
-    assert found
-    assert [f"{each.name}: {each.value}, {each.note}" for each in found if each.failed] == []
+    results = [result for each in chosen if each.applies(subject) for result in each.run(subject)]
+    assert results
+    assert [f"{each.name}: {each.value}, {each.note}" for each in results if each.failed] == []
 
 
 @pytest.mark.slow
@@ -125,12 +125,12 @@ def test_walls_that_let_the_cylinder_out_are_detected() -> None:
 
 
 def test_samples_at_the_nearest_step_are_detected() -> None:
-    def nearest(found: Trace) -> Trace:
-        off = found.time - np.round(found.time / found.time_step) * found.time_step
-        return dataclasses.replace(found, rolling_angle=found.rolling_angle - off * found.rolling_rate)
+    def nearest(trace: Trace) -> Trace:
+        off = trace.time - np.round(trace.time / trace.time_step) * trace.time_step
+        return dataclasses.replace(trace, rolling_angle=trace.rolling_angle - off * trace.rolling_rate)
 
-    found = agreement.fields(answered(nearest)(ENGINES["mujoco"]), "flat")
-    assert {each.name for each in found if each.failed} >= {"rolling_angle"}
+    results = agreement.fields(answered(nearest)(ENGINES["mujoco"]), "flat")
+    assert {each.name for each in results if each.failed} >= {"rolling_angle"}
 
 
 @pytest.mark.parametrize(

@@ -189,9 +189,9 @@ def test_a_second_engine_decides_between_model_and_engine(
     model = made(TIME, RAMP, run=Run(None, "recess"))
     job = Job(case=model.case, run=Run("mujoco", "recess"))
     wrong = made(TIME, (1.0 + engine) * RAMP)
-    found = suite.likely_cause(SuiteRuns(), job, model, wrong, until=1.0)
-    assert found[0] == cause
-    assert note in found[1]
+    likely = suite.likely_cause(SuiteRuns(), job, model, wrong, until=1.0)
+    assert likely[0] == cause
+    assert note in likely[1]
 
 
 def test_the_runs_of_a_suite_are_checked_before_one_starts() -> None:

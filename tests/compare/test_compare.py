@@ -122,14 +122,14 @@ def test_a_suite_is_cases_times_runs_with_a_row_for_each_reference(made_up, case
     # no engine runs, so none needs to be installed: PyBullet is not everywhere
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
     other = Case(cylinder, case.motion, name="second")
-    found = comparison(Suite([case, other], [Run("mujoco", "recess"), Run("pybullet", "flat")]), workers=1)
+    results = comparison(Suite([case, other], [Run("mujoco", "recess"), Run("pybullet", "flat")]), workers=1)
     rows = [("mujoco", "recess", "recess"), ("pybullet", "flat", "recess"), ("pybullet", "flat", "flat")]
     expected = [(name, *row) for name in ("synthetic", "second") for row in rows]
     columns = ["case", "engine", "support", "reference_support"]
-    assert [*found.summary[columns].itertuples(index=False, name=None)] == expected
+    assert [*results.summary[columns].itertuples(index=False, name=None)] == expected
     labels = ("recess model", "flat-ground model", "mujoco recess", "pybullet flat")
-    assert set(found.traces) == {(name, label) for name in ("synthetic", "second") for label in labels}
-    assert not found.summary.diverged.any()
+    assert set(results.traces) == {(name, label) for name in ("synthetic", "second") for label in labels}
+    assert not results.summary.diverged.any()
 
 
 def test_a_window_affects_only_the_rms(made_up, case, cylinder):
@@ -180,14 +180,14 @@ def test_a_run_without_samples_is_a_failed_row(monkeypatch, made_up, case):
 
 def test_files_hold_the_whole_result(made_up, case, tmp_path):
     made_up()
-    found = comparison(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1, out=tmp_path)
+    results = comparison(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1, out=tmp_path)
     (manifest,) = read_manifests(tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {"manifest.json", *manifest.files, *manifest.pages}
     assert {"summary.parquet", "summary.csv", "traces.parquet", "passes.parquet"} <= set(manifest.files)
     summary = pd.read_csv(tmp_path / "summary.csv", keep_default_na=False, na_values=["nan"])
     assert list(summary.columns) == list(SUMMARY_COLUMNS)
     # the default parser of older pandas is off by a rounding
-    assert summary.tilt_rms.tolist() == pytest.approx(found.summary.tilt_rms.tolist(), rel=ROUNDING)
+    assert summary.tilt_rms.tolist() == pytest.approx(results.summary.tilt_rms.tolist(), rel=ROUNDING)
     samples = pd.read_parquet(tmp_path / "traces.parquet")
     assert samples.groupby("run").size().to_dict() == dict.fromkeys(
         ["recess model", "flat-ground model", "mujoco recess", "mujoco flat"], 1001
@@ -220,9 +220,9 @@ def test_bad_folders_and_windows_are_refused_before_anything_runs(monkeypatch, c
 )
 def test_no_run_is_compared_with_itself(cylinder: Cylinder, run: Run, reference: Run | None) -> None:
     pushed = Case(cylinder, GroundMotion([[3.0, 1.0], [3.0, 1.0]], 0.5, "push"))
-    found = comparison(pushed, runs=[run], reference=reference, workers=1)
-    (row,) = found.summary.to_dict("records")
+    results = comparison(pushed, runs=[run], reference=reference, workers=1)
+    (row,) = results.summary.to_dict("records")
     assert row["run"] != row["reference"]
     for label, wanted in ((row["run"], run), (row["reference"], reference or Run(None, "recess"))):
-        assert found.traces["push", label].peak_tilt == simulate_run(pushed, wanted).peak_tilt
+        assert results.traces["push", label].peak_tilt == simulate_run(pushed, wanted).peak_tilt
     assert row["peak_tilt_difference"] != 0.0

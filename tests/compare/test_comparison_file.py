@@ -35,8 +35,8 @@ CASES = [
 def saved(tmp_path_factory) -> tuple[Comparison, Comparison]:
     folder = tmp_path_factory.mktemp("comparison")
     runs = [Run("mujoco", "recess", 1e-3), Run("mujoco", "flat", 1e-3)]
-    made = comparison(Suite(CASES, runs), workers=1, out=folder, budget=True)
-    return made, Comparison.load(folder)
+    comparison_ = comparison(Suite(CASES, runs), workers=1, out=folder, budget=True)
+    return comparison_, Comparison.load(folder)
 
 
 def test_cases_of_a_saved_comparison_are_restored(saved):
@@ -74,32 +74,32 @@ def test_budgets_of_a_saved_comparison_are_restored(saved):
 
 
 def test_folders_of_0_3_are_read_and_older_ones_refused_by_release(saved, tmp_path):
-    made, trace = saved[0], saved[0].traces["release", "recess model"]
+    saved_now, trace = saved[0], saved[0].traces["release", "recess model"]
     columns = {"time": trace.time, "tilt [rad]": trace.tilt, "azimuth [deg]": np.degrees(trace.rolling_angle)}
     pd.DataFrame(columns).to_csv(path := tmp_path / "table.csv", index=False)
-    made = comparison(CASES[0], runs=[], external=[path], workers=1)
+    saved_now = comparison(CASES[0], runs=[], external=[path], workers=1)
     # version 0.3 had one table, and no mode
-    whole = made.rows("release").drop(columns=["mode", "error_source", "twist_rms"])
-    tables = {name: table for name, table in made.tables.items() if name != "external"}
-    dataclasses.replace(made, tables=tables | {"summary": whole}).save(tmp_path / "old")
+    whole = saved_now.rows("release").drop(columns=["mode", "error_source", "twist_rms"])
+    tables = {name: table for name, table in saved_now.tables.items() if name != "external"}
+    dataclasses.replace(saved_now, tables=tables | {"summary": whole}).save(tmp_path / "old")
     read = Comparison.load(tmp_path / "old")
-    assert [*map(str, read.findings())] == [*map(str, made.findings())]
-    assert set(read.summary) == set(made.summary)
-    assert read.external["differs_in"].tolist() == made.external["differs_in"].tolist() == [()]
+    assert [*map(str, read.findings())] == [*map(str, saved_now.findings())]
+    assert set(read.summary) == set(saved_now.summary)
+    assert read.external["differs_in"].tolist() == saved_now.external["differs_in"].tolist() == [()]
     older = tables | {"summary": whole.drop(columns="energy_loss")}
-    dataclasses.replace(made, tables=older).made_by().save(tmp_path / "older")
+    dataclasses.replace(saved_now, tables=older).made_by().save(tmp_path / "older")
     with pytest.raises(
-        ValueError, match=f"no energy_loss; the release .* reads it, {made.versions['rockwobble']}"
+        ValueError, match=f"no energy_loss; the release .* reads it, {saved_now.versions['rockwobble']}"
     ):
         Comparison.load(tmp_path / "older")
 
 
 def test_manifest_and_tables_state_their_origin(saved, tmp_path):
     saved[0].made_by("rockwobble compare").save(tmp_path, pages={"report.md": b"# Report"})
-    made = read_results(tmp_path, "comparison").manifest
-    assert made.headline["rows"] == len(saved[0].summary)
-    assert made.headline["diverged"] == saved[0].summary["diverged"].sum()
-    assert (made.command, made.pages) == ("rockwobble compare", ("report.md",))
+    manifest = read_results(tmp_path, "comparison").manifest
+    assert manifest.headline["rows"] == len(saved[0].summary)
+    assert manifest.headline["diverged"] == saved[0].summary["diverged"].sum()
+    assert (manifest.command, manifest.pages) == ("rockwobble compare", ("report.md",))
     for path in tmp_path.glob("*.parquet"):
         about = read_about(path)
         assert about["versions"]["mujoco"] == saved[0].versions["mujoco"]

@@ -27,8 +27,8 @@ def _agree(run: multibody.Trajectory, model: Trace, alpha: float, start: float) 
     np.testing.assert_allclose(run.time, model.time, rtol=1e-14)  # rounding
     between = (model.tilt > BETWEEN * alpha) & (model.time >= start)
     assert between.sum() > 200
-    found, expected = run.contact_force[between], model.contact_force[between]
-    difference = found - expected
+    forces, expected = run.contact_force[between], model.contact_force[between]
+    difference = forces - expected
     size = np.linalg.norm(expected, axis=1)
     assert (np.abs(difference[:, 2]) < FORCE * expected[:, 2]).all()
     # the horizontal force passes through zero, so it is compared with the whole force

@@ -119,8 +119,8 @@ def test_interval_of_a_difference_of_shares_tends_to_the_normal_one(only: float,
     ],
 )
 def test_quantiles_of_few_and_infinite_values(values, share, expected):
-    found = quantile_interval(np.array(values), share)
-    np.testing.assert_equal((found.value, found.low, found.high), expected)
+    interval = quantile_interval(np.array(values), share)
+    np.testing.assert_equal((interval.value, interval.low, interval.high), expected)
 
 
 def test_equality_is_claimed_by_the_interval_alone():
@@ -128,18 +128,18 @@ def test_equality_is_claimed_by_the_interval_alone():
     edge = math.log(1.0 + MARGIN)
     claimed = []
     for values in ratios_of(shift=edge, scatter=0.03, seed=8):
-        found = quantile_interval(values, 0.5)
-        claimed.append(-edge <= found.low and found.high <= edge)
+        claim = quantile_interval(values, 0.5)
+        claimed.append(-edge <= claim.low and claim.high <= edge)
     assert np.mean(claimed) <= LEVEL
     peaks = sample(1)
     scattered = peaks * np.exp(0.3 * np.random.default_rng(2).standard_normal(COUNT))
     # methods without a significant difference need not be equal, nor need a significant difference be large
     for trial, verdict, apart in ((scattered, "undecided", False), (1.001 * peaks, "within", True)):
-        found = contrast_of(trial, peaks, UP, UP)
-        assert (found.verdict, found.ratio_p < 0.05) == (verdict, apart)
-    found = contrast_of(1.1 * peaks, peaks, UP, UP)
-    assert (found.verdict, found.compared, found.higher, found.lower) == ("beyond", COUNT, COUNT, 0)
-    assert (found.ratio.low, found.ratio.value, found.ratio.high) == pytest.approx((1.1,) * 3, abs=ROUNDING)
+        claim = contrast_of(trial, peaks, UP, UP)
+        assert (claim.verdict, claim.ratio_p < 0.05) == (verdict, apart)
+    claim = contrast_of(1.1 * peaks, peaks, UP, UP)
+    assert (claim.verdict, claim.compared, claim.higher, claim.lower) == ("beyond", COUNT, COUNT, 0)
+    assert (claim.ratio.low, claim.ratio.value, claim.ratio.high) == pytest.approx((1.1,) * 3, abs=ROUNDING)
 
 
 @pytest.mark.parametrize("count", [COUNT, 201])
@@ -148,14 +148,14 @@ def test_a_ratio_within_reach_is_detected_with_its_power(count):
     scatter = 0.3 * norm.ppf((np.arange(count) + 0.5) / count)
     reach = ratio_within_reach(scatter)
     ratios = ratios_of(shift=math.log(reach), scatter=0.3, count=count, seed=10)
-    told = np.mean([quantile_interval(values, 0.5).low > 0.0 for values in ratios])
+    share = np.mean([quantile_interval(values, 0.5).low > 0.0 for values in ratios])
     index = end_index(count, 0.5, 0.5 * (1.0 - CONFIDENCE))
     assert index is not None
     needed = betaincinv(count + 1 - index, index, POWER)
     # the reach is at most one step of the members' shares beyond the need; three standard deviations of 2000
     # trials
     most = betainc(count + 1 - index, index, needed + 1.0 / count)
-    assert POWER - 0.027 <= told <= most + 0.027
+    assert POWER - 0.027 <= share <= most + 0.027
     for same in (-scatter, scatter + 0.5):
         assert ratio_within_reach(same) == pytest.approx(reach, abs=ROUNDING)
 
@@ -178,9 +178,9 @@ def test_overturned_members_are_largest_and_failed_ones_are_ignored():
         [math.nan, math.inf, -math.inf, math.nan, math.log(1.5), math.nan],
         atol=ROUNDING,
     )
-    found = contrast_of(peaks, against, fell, fell_there)
-    assert (found.count, found.compared, found.higher, found.lower) == (5, 3, 2, 1)
-    assert (found.overturned, found.against_overturned, found.both_overturned) == (2, 2, 1)
+    contrast = contrast_of(peaks, against, fell, fell_there)
+    assert (contrast.count, contrast.compared, contrast.higher, contrast.lower) == (5, 3, 2, 1)
+    assert (contrast.overturned, contrast.against_overturned, contrast.both_overturned) == (2, 2, 1)
     assert Pairs(peaks[4:], against[4:], fell[4:], fell_there[4:]).contrast() is None  # of one member
 
 
@@ -208,8 +208,8 @@ def test_the_interval_of_a_difference_of_shares_contains_it():
     for count in (2, 5, COUNT):
         for only in range(count + 1):
             for only_there in range(count + 1 - only):
-                found = paired_difference(only, only_there, count)
-                assert -1.0 <= found.low <= found.value <= found.high <= 1.0
+                interval = paired_difference(only, only_there, count)
+                assert -1.0 <= interval.low <= interval.value <= interval.high <= 1.0
     assert paired_difference(0, 0, COUNT) == Interval(
         value=0.0, low=pytest.approx(-0.1155, abs=1e-4), high=pytest.approx(0.1155, abs=1e-4)
     )

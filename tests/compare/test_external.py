@@ -39,13 +39,13 @@ def in_recess():
 
 def rows(case, path, **given):
     """Rows of the engine, run again as in `in_recess`, and of the file."""
-    found = comparison(
+    results = comparison(
         case,
         runs=[Run("mujoco", "recess", 5e-4)],
         external=[External(path=path, **given)],
         workers=1,
     )
-    table = found.rows(case.name).set_index("run")
+    table = results.rows(case.name).set_index("run")
     return table.loc["mujoco recess"], table.loc[path.stem]
 
 
@@ -91,10 +91,10 @@ def test_uplift_passes_and_whole_turns_are_those_of_the_engine(in_recess, save):
     assert np.isnan(trajectory.rolling_angle[trajectory.time < trajectory.uplift_time]).all()
     assert read_trajectory(save(columns(in_recess["release"])[ANGLES]), RELEASE).uplift_time == 0.0
     # the first pass dips by 3e-6 rad, below the noise threshold
-    own, back = engine.passes[engine.passes["time"] > 2.0], trajectory.passes
-    assert len(back) == len(own) >= 2
+    passes, back = engine.passes[engine.passes["time"] > 2.0], trajectory.passes
+    assert len(back) == len(passes) >= 2
     for name in ("time", "angle_of_turn"):  # a tenth of a sample
-        assert back[name].to_numpy() == pytest.approx(own[name].to_numpy(), abs=1e-3)
+        assert back[name].to_numpy() == pytest.approx(passes[name].to_numpy(), abs=1e-3)
     assert back["resolved"].all()
 
 
@@ -190,9 +190,9 @@ def test_half_turns_of_planar_motion_are_passes_without_twist(save: Callable[...
 
 def test_peak_is_a_vertex_and_of_a_short_file_over_its_duration(save) -> None:
     trace, coarse = reduced.simulate(SHAKEN), reduced.simulate(SHAKEN, sample_step=0.04)
-    found = read_trajectory(save(columns(coarse)[ANGLES]), SHAKEN)
+    trajectory = read_trajectory(save(columns(coarse)[ANGLES]), SHAKEN)
     # vertex of a parabola; the highest of these samples is 4e-5 lower
-    assert found.peak_tilt == pytest.approx(trace.peak_tilt, abs=1e-5)
+    assert trajectory.peak_tilt == pytest.approx(trace.peak_tilt, abs=1e-5)
     early = columns(trace)[ANGLES][trace.time <= 0.7 * trace.time[int(np.argmax(trace.tilt))]]
     row = comparison(SHAKEN, runs=[], external=[save(early)], workers=1).summary.iloc[0]
     assert row["reference_peak_tilt"] > 1.1 * row["peak_tilt"]

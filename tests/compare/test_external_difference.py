@@ -44,11 +44,11 @@ TILT = swings(0.1, 0.08, 0.06, 0.1)
 
 def test_an_azimuth_differs_by_its_bound_and_from_its_first_sample():
     for degrees in (2.0, 4.0):
-        found = held(motion(TILT, TIME), motion(TILT, TIME + math.radians(degrees)))
-        assert found.azimuth.size == pytest.approx(math.radians(degrees))
-        assert found.azimuth.differs == (math.radians(degrees) > AZIMUTH_BOUND)
+        difference = held(motion(TILT, TIME), motion(TILT, TIME + math.radians(degrees)))
+        assert difference.azimuth.size == pytest.approx(math.radians(degrees))
+        assert difference.azimuth.differs == (math.radians(degrees) > AZIMUTH_BOUND)
     # 5 % of the largest tilt
-    assert found.azimuth.first_time == pytest.approx(math.asin(math.sqrt(0.05)) / math.pi, abs=0.01)
+    assert difference.azimuth.first_time == pytest.approx(math.asin(math.sqrt(0.05)) / math.pi, abs=0.01)
 
 
 def test_azimuth_near_upright_and_after_the_agreement_is_ignored():

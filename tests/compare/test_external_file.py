@@ -225,8 +225,8 @@ def test_noise_is_estimated_from_the_samples(save, response):
     for share in (0.001, 0.005):
         noise = share * PIER.alpha * random.normal(size=(2, len(response.time)))
         lean = np.sin(response.tilt) * np.exp(1j * response.rolling_angle) + noise[0] + 1j * noise[1]
-        found = {"tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)}
-        poses = measurement(read_trajectory(save(columns(response)[ANGLES].assign(**found)), RELEASE)).poses
+        table = {"tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)}
+        poses = measurement(read_trajectory(save(columns(response)[ANGLES].assign(**table)), RELEASE)).poses
         # the median of 400 normal numbers, to three of its standard deviations
         assert poses.noise == pytest.approx(share * PIER.alpha, rel=0.2)
         assert poses.stands == pytest.approx(5.0 * poses.noise)
@@ -235,10 +235,10 @@ def test_noise_is_estimated_from_the_samples(save, response):
 def test_samples_of_a_rockwobble_run_are_read_unchanged(tmp_path):
     run = reduced.simulate(RELEASE)
     run.to_frame().to_csv(tmp_path / "run.csv", index=False)
-    found = read_trajectory(tmp_path / "run.csv", RELEASE)
-    assert found.tilt == pytest.approx(run.tilt, abs=ROUNDING)
-    assert found.rolling_angle == pytest.approx(run.rolling_angle, abs=ROUNDING)
-    assert found.centre_of_mass == pytest.approx(run.centre_of_mass, abs=ROUNDING)
+    trajectory = read_trajectory(tmp_path / "run.csv", RELEASE)
+    assert trajectory.tilt == pytest.approx(run.tilt, abs=ROUNDING)
+    assert trajectory.rolling_angle == pytest.approx(run.rolling_angle, abs=ROUNDING)
+    assert trajectory.centre_of_mass == pytest.approx(run.centre_of_mass, abs=ROUNDING)
 
 
 def test_ignored_columns_are_named_in_full(tmp_path):

@@ -25,11 +25,11 @@ def test_uplift_of_power_law_growth_is_found_within_two_samples():
     time = 0.02 * np.arange(100)
     for power, begin in itertools.product((2, 3, 4), (0.613, 0.6205)):
         tilt = 0.5 * np.maximum(time - begin, 0.0) ** power
-        found = uplift(time, tilt, 0.3 + time, stands=1e-6)
+        start = uplift(time, tilt, 0.3 + time, stands=1e-6)
         # the cube root of another power is curved: by less than a sample; of its own power, rounding
-        assert found.time == pytest.approx(begin, abs=1e-9 if power == 3 else 0.02)
+        assert start.time == pytest.approx(begin, abs=1e-9 if power == 3 else 0.02)
         # the direction is that of the first tilted sample, at most (2e-6)^(1/4) s and a sample later
-        assert 0.0 <= found.direction - (0.3 + begin) < 0.0376 + 0.02
+        assert 0.0 <= start.direction - (0.3 + begin) < 0.0376 + 0.02
     ones = np.ones(100)  # a release, and a body at rest
     assert uplift(time, 0.1 * ones, ones, stands=1e-3) == (0.0, 1.0, 0)
     still = uplift(time, 0.0 * ones, ones, stands=1e-3)

@@ -86,8 +86,8 @@ def verdict(name, path, model="recess"):
     return judged(read_trajectory(path, CASES[name]), response(name, model), CASES[name])
 
 
-def named(found):
-    return [(mistake.concerns, mistake.code) for mistake in found.mistakes]
+def named(judged):
+    return [(mistake.concerns, mistake.code) for mistake in judged.mistakes]
 
 
 # a mass centre alone is read as that of a cylinder in a recess
@@ -149,8 +149,8 @@ def test_a_fall_of_another_size_is_no_offset_of_the_clock(save, start, code):
     model = reduced.simulate(case)
     for size, delay, expected in ((0.99, 0.0, code), (1.01, 0.0, code), (1.0, 0.3, ["time_offset"])):
         body = dataclasses.replace(PIER, semidiagonal=size * PIER.semidiagonal)
-        found = reduced.simulate(dataclasses.replace(case, cylinder=body))
-        trajectory = read_trajectory(save(later(columns(found)[ANGLES], delay)), case)
+        trace = reduced.simulate(dataclasses.replace(case, cylinder=body))
+        trajectory = read_trajectory(save(later(columns(trace)[ANGLES], delay)), case)
         assert [mistake.code for mistake in judged(trajectory, model, case).mistakes] == expected, size
 
 
@@ -184,25 +184,25 @@ MISTAKES = {
 def test_a_mistake_is_named_with_its_value(save, mistake):
     change, concerns, code, value = MISTAKES[mistake]
     for name, noise in (("pier wobbles", 0.0), ("pier shaken", NOISE)):
-        found = verdict(name, save(change(samples(name, noise=noise))))
-        assert found.differs_in
-        assert named(found) == [(concerns, code)]
+        judged = verdict(name, save(change(samples(name, noise=noise))))
+        assert judged.differs_in
+        assert named(judged) == [(concerns, code)]
         wanted = math.nan if value is None else value
         # accuracy of the fit: a fiftieth
-        assert found.mistakes[0].value == pytest.approx(wanted, rel=0.02, nan_ok=True)
-        assert found.differs_without_mistake == ()
+        assert judged.mistakes[0].value == pytest.approx(wanted, rel=0.02, nan_ok=True)
+        assert judged.differs_without_mistake == ()
 
 
 def test_two_mistakes_are_both_named(save):
     table = scaled(turned(samples("pier shaken"), 90.0, mirrored=True), 1e3, *XYZ)
-    found = verdict("pier shaken", save(table))
-    assert named(found) == [("axes", "axes_exchanged"), ("path", "length_unit")]
-    assert found.likely_mistake_value == pytest.approx((math.nan, 1000.0), nan_ok=True)
-    assert found.differs_without_mistake == ()
-    words = lists_in_words(pd.DataFrame([vars(found)])).iloc[0]
+    judged = verdict("pier shaken", save(table))
+    assert named(judged) == [("axes", "axes_exchanged"), ("path", "length_unit")]
+    assert judged.likely_mistake_value == pytest.approx((math.nan, 1000.0), nan_ok=True)
+    assert judged.differs_without_mistake == ()
+    words = lists_in_words(pd.DataFrame([vars(judged)])).iloc[0]
     texts = words["likely_mistake"], words["likely_mistake_value"]
     assert texts == ("axes_exchanged; length_unit", "; 1000")
-    assert found.agreement_without_mistake == pytest.approx(8.0)
+    assert judged.agreement_without_mistake == pytest.approx(8.0)
 
 
 @pytest.mark.parametrize("name", ["planar", "hardly moves"])
@@ -221,10 +221,10 @@ def test_quaternions_of_another_order_and_axes_are_named(save):
         ((w, x, z, -y), {"x": east, "y": up, "z": -north}, ("axes", "y_up")),
     ):
         table = {"time": trace.time, **dict(zip(TURN[1:], turns, strict=True)), **place}
-        found = verdict("pier wobbles", save(pd.DataFrame(table)))
-        assert named(found) == [expected]
-        assert found.mistakes[0].changes_tilt
-        assert found.differs_without_mistake == ()
+        judged = verdict("pier wobbles", save(pd.DataFrame(table)))
+        assert named(judged) == [expected]
+        assert judged.mistakes[0].changes_tilt
+        assert judged.differs_without_mistake == ()
 
 
 @pytest.mark.parametrize(("name", "model"), [("pier wobbles", "flat"), ("drum shaken", "recess")])
@@ -232,22 +232,22 @@ def test_any_steady_spin_about_the_axis_is_named(save, name, model):
     trace, chance = response(name, model), np.random.default_rng(11)
     for sign in (1.0, -1.0):
         rate = sign * 10.0 ** chance.uniform(-1.0, 1.0)
-        found = verdict(name, save(columns(trace, spin=rate)[TURN]), model)
-        assert (found.differs_in, named(found)) == (("twist",), [("twist", "spin")])
+        judged = verdict(name, save(columns(trace, spin=rate)[TURN]), model)
+        assert (judged.differs_in, named(judged)) == (("twist",), [("twist", "spin")])
         # at rest the azimuth, and with it the start of the spin, is a sample off
-        assert found.mistakes[0].value == pytest.approx(math.degrees(rate), rel=1e-3)
+        assert judged.mistakes[0].value == pytest.approx(math.degrees(rate), rel=1e-3)
 
 
 def test_y_that_points_up_in_the_path_alone_is_named(save):
     table = samples("pier wobbles")
-    found = verdict("pier wobbles", save(table.assign(y=table["z"], z=-table["y"])))
-    assert named(found) == [("path", "y_up")]
+    judged = verdict("pier wobbles", save(table.assign(y=table["z"], z=-table["y"])))
+    assert named(judged) == [("path", "y_up")]
 
 
 def test_planar_motion_names_a_rotation_where_a_mirror_fits_too(save):
     turn = 2.0 * math.degrees(0.5)  # of a mirror image: its plane is at 0.5 rad
-    found = verdict("planar", save(turned(samples("planar", "angles"), 90.0 + turn, mirrored=True)))
-    assert named(found) == [("azimuth", "turned_counterclockwise")]
+    judged = verdict("planar", save(turned(samples("planar", "angles"), 90.0 + turn, mirrored=True)))
+    assert named(judged) == [("azimuth", "turned_counterclockwise")]
     # mirrored in its own plane it is the same motion
     same = turned(samples("planar", "angles"), 2.0 * math.degrees(0.5), mirrored=True)
     assert verdict("planar", save(same)).differs_in == ()
@@ -272,12 +272,12 @@ def test_another_size_or_gravity_is_the_time_scale_of_a_release(save, name, othe
     for azimuth, codes in ((0.0, []), (90.0, ["turned_counterclockwise"])):
         table = other_body(name, **changes)
         table["azimuth [rad]"] += math.radians(azimuth)
-        found = verdict(name, save(table))
+        judged = verdict(name, save(table))
         # a rotated azimuth is no cause of a tilt difference, and is named besides
-        assert [mistake.code for mistake in found.mistakes] == ["time_scale", *codes]
+        assert [mistake.code for mistake in judged.mistakes] == ["time_scale", *codes]
         # an unscaled spin adds a tenth
-        assert found.mistakes[0].value ** 2 - 1.0 == pytest.approx(size - 1.0, rel=0.12)
-        assert [mistake.changes_tilt for mistake in found.mistakes] == [True] + [False] * len(codes)
+        assert judged.mistakes[0].value ** 2 - 1.0 == pytest.approx(size - 1.0, rel=0.12)
+        assert [mistake.changes_tilt for mistake in judged.mistakes] == [True] + [False] * len(codes)
 
 
 LARGER = {"cylinder": Cylinder(semidiagonal=6.3, tan_alpha=0.2)}
@@ -285,9 +285,9 @@ LARGER = {"cylinder": Cylinder(semidiagonal=6.3, tan_alpha=0.2)}
 
 @pytest.mark.parametrize("changes", [LARGER, {"gravity": 9.3}])
 def test_under_shaking_another_size_or_gravity_is_no_time_scale(save, changes):
-    found = verdict("pier shaken", save(other_body("pier shaken", **changes)))
-    assert "tilt" in found.differs_in
-    assert found.mistakes == ()
+    judged = verdict("pier shaken", save(other_body("pier shaken", **changes)))
+    assert "tilt" in judged.differs_in
+    assert judged.mistakes == ()
 
 
 @pytest.mark.slow
@@ -296,8 +296,8 @@ def test_another_start_is_no_mistake_of_the_file(save, name):
     start = CASES[name].initial
     for key, factor in (("tilt", 1.02), ("tilt", 1.05), ("rolling_rate", 1.05), ("rolling_rate", 1.2)):
         initial = dataclasses.replace(start, **{key: factor * getattr(start, key)})
-        found = verdict(name, save(other_body(name, initial=initial)))
-        assert found.mistakes == (), (key, factor)
+        judged = verdict(name, save(other_body(name, initial=initial)))
+        assert judged.mistakes == (), (key, factor)
 
 
 @pytest.mark.slow
@@ -312,10 +312,10 @@ def test_decaying_motion_loses_energy_and_has_no_other_time_scale(save, name):
 
 @pytest.mark.parametrize("resistance", [0.01, 0.03])
 def test_the_rolling_resistance_of_a_trajectory_is_identified(save, resistance):
-    found = verdict("pier wobbles", save(other_body("pier wobbles", rolling_resistance=resistance)))
-    assert found.likely_mistake == ("energy_loss", "rolling_resistance")
+    judged = verdict("pier wobbles", save(other_body("pier wobbles", rolling_resistance=resistance)))
+    assert judged.likely_mistake == ("energy_loss", "rolling_resistance")
     # the finest lengths tried are 2 % apart
-    assert found.likely_mistake_value[1] == pytest.approx(resistance, rel=0.05)
+    assert judged.likely_mistake_value[1] == pytest.approx(resistance, rel=0.05)
 
 
 def test_missing_columns_are_reported_and_not_compared(save):
@@ -325,30 +325,30 @@ def test_missing_columns_are_reported_and_not_compared(save):
     assert verdict("pier shaken", save(samples("pier shaken", "angles"))).not_given == ("path",)
     assert verdict("pier shaken", save(samples("pier shaken", "mass"))).not_compared == ()
     small = scaled(samples("pier shaken"), 1e-3, "tilt [deg]")
-    found = verdict("pier shaken", save(small))
-    assert (found.not_compared, found.not_given) == (("azimuth",), ())
+    judged = verdict("pier shaken", save(small))
+    assert (judged.not_compared, judged.not_given) == (("azimuth",), ())
 
 
 def test_a_trajectory_of_another_problem_gets_no_explanation(save):
-    found = verdict("pier wobbles", save(samples("pier shaken")))
+    judged = verdict("pier wobbles", save(samples("pier shaken")))
     # one sample at which an offset would fit is no path that agrees
-    assert (found.differs_in, found.mistakes) == (("tilt",), ())
-    assert (found.not_compared, found.not_given) == (("azimuth", "path"), ())
+    assert (judged.differs_in, judged.mistakes) == (("tilt",), ())
+    assert (judged.not_compared, judged.not_given) == (("azimuth", "path"), ())
 
 
 def test_a_verdict_is_a_row_of_a_separate_table(save, tmp_path):
     path = save(turned(samples("pier shaken", "angles"), 90.0))
-    found = comparison(CASES["pier shaken"], runs=[], external=[path], workers=1, out=tmp_path / "out")
-    (row,) = found.external.to_dict("records")
+    results = comparison(CASES["pier shaken"], runs=[], external=[path], workers=1, out=tmp_path / "out")
+    (row,) = results.external.to_dict("records")
     again = Comparison.load(tmp_path / "out").external
-    pd.testing.assert_frame_equal(found.external, again, check_exact=True)
+    pd.testing.assert_frame_equal(results.external, again, check_exact=True)
     text = pd.read_csv(tmp_path / "out" / "external.csv").iloc[0]
     assert (text["differs_in"], text["likely_mistake"]) == (
         "azimuth; uplift_direction",
         "turned_counterclockwise",
     )
     assert set(VERDICT_COLUMNS) <= set(row)
-    assert not found.summary["diverged"].any()  # the tilts agree
+    assert not results.summary["diverged"].any()  # the tilts agree
     assert row["differs_in"] == ("azimuth", "uplift_direction")
     assert row["azimuth_rms"] == pytest.approx(90.0, abs=0.1)
     # from the first tilt of more than 5 % of the largest on
@@ -359,8 +359,8 @@ def test_a_verdict_is_a_row_of_a_separate_table(save, tmp_path):
 
 def test_noise_is_no_divergence(save):
     path = save(samples("pier wobbles", "angles", noise=NOISE))
-    found = comparison(CASES["pier wobbles"], runs=[], external=[path], workers=1)
-    (row,) = found.external.to_dict("records")
-    assert not found.summary["diverged"].any()
+    results = comparison(CASES["pier wobbles"], runs=[], external=[path], workers=1)
+    (row,) = results.external.to_dict("records")
+    assert not results.summary["diverged"].any()
     assert row["noise"] == pytest.approx(NOISE, rel=0.2)
     assert row["tilt_bound"] == pytest.approx(0.01 + 5.0 * row["noise"])

@@ -69,9 +69,9 @@ def test_every_field_is_stored_to_the_last_bit(tmp_path, method):
 def test_only_missing_runs_are_made_and_the_order_is_unchanged(tmp_path, counted):
     run(tmp_path, MODEL, FREE)
     counted.clear()
-    found = run(tmp_path, GUIDED, FREE, MODEL)
+    results = run(tmp_path, GUIDED, FREE, MODEL)
     assert counted == ["mujoco recess"]
-    assert [str(trace.run) for trace in found] == ["mujoco recess", "mujoco flat", "recess model"]
+    assert [str(trace.run) for trace in results] == ["mujoco recess", "mujoco flat", "recess model"]
 
 
 def test_a_cached_run_is_found_by_case_and_not_by_label():

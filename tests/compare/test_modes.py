@@ -46,9 +46,9 @@ def test_slides_diverge_by_a_share_of_the_peak_displacement() -> None:
 
 def test_engine_closes_as_the_planar_model_by_momentum() -> None:
     case = rw.Case(CASK, ALONG.scaled(1.5), friction=2.0, duration=1.5)
-    found = rw.comparison(case, runs=[rw.Run("mujoco", "flat", 2e-4)], workers=1)
-    (row,) = found.summary.itertuples()
+    comparison = rw.comparison(case, runs=[rw.Run("mujoco", "flat", 2e-4)], workers=1)
+    (row,) = comparison.summary.itertuples()
     assert (row.reference, row.mode) == ("planar model by momentum", "rocks in one plane")
-    assert {label for _, label in found.traces} == {row.run, row.reference}  # that model is also its own
+    assert {label for _, label in comparison.traces} == {row.run, row.reference}  # that model is also its own
     assert not row.diverged
     assert row.peak_tilt_difference == pytest.approx(0.0, abs=0.005)  # of 0.13 alpha

@@ -198,12 +198,12 @@ def test_energy_loss_in_free_motion_is_start_minus_end(make_trace):
 @pytest.mark.parametrize("record_step", [0.005, 0.02, 0.013])
 def test_work_of_the_ground_counts_as_no_loss(make_trace, record_step):
     """A free mass on moving ground moves by -u relative to it; its energy is the work of -a."""
-    own = np.arange(0.0, 8.0 + 0.5 * record_step, record_step)
+    times = np.arange(0.0, 8.0 + 0.5 * record_step, record_step)
     # fades out, because the fine sums below have no jump
-    a = np.column_stack([np.sin(2.0 * own), 0.5 * np.cos(3.0 * own)]) * (1.0 - own / own[-1])[:, None]
+    a = np.column_stack([np.sin(2.0 * times), 0.5 * np.cos(3.0 * times)]) * (1.0 - times / times[-1])[:, None]
     motion = GroundMotion(a, record_step)
     h = 1.25e-4
-    at = np.column_stack([np.interp(np.arange(80001) * h, own, column, right=0.0) for column in a.T])
+    at = np.column_stack([np.interp(np.arange(80001) * h, times, column, right=0.0) for column in a.T])
     v = -np.vstack([np.zeros(2), np.cumsum(0.5 * (at[1:] + at[:-1]) * h, axis=0)])
     x = np.vstack([np.zeros(2), np.cumsum(0.5 * (v[1:] + v[:-1]) * h, axis=0)])
     place = np.column_stack([x, np.zeros(len(x))])[::80]

@@ -47,9 +47,9 @@ def test_the_largest_part_gives_the_error_and_its_source() -> None:
         (motion(0.5, model), {"copy": 7.5}, (math.inf, "copies")),
         (motion(8.0, engine), {}, (math.inf, "step")),
     ):
-        found = error(trial, **parts)
-        assert found.source == expected[1]
-        assert found.size == pytest.approx(expected[0])
+        estimate = error(trial, **parts)
+        assert estimate.source == expected[1]
+        assert estimate.size == pytest.approx(expected[0])
 
 
 def test_a_run_without_a_peak_has_no_error() -> None:

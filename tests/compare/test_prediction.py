@@ -79,8 +79,8 @@ def test_an_exactly_upright_pass_before_a_fall_ends_the_agreement(cylinder):
     assert response.passes.empty
     (landed,) = landings(response)
     assert landed == pytest.approx(response.extrema[1, 0], abs=0.01)  # a sample
-    found = close_pass(response, 1e-5, 6.0)
-    assert (found.reason, found.length) == ("pass", landed - response.uplift_time)
+    prediction = close_pass(response, 1e-5, 6.0)
+    assert (prediction.reason, prediction.length) == ("pass", landed - response.uplift_time)
 
 
 @pytest.mark.parametrize(

@@ -62,8 +62,8 @@ def test_a_suite_replaces_an_engine_that_has_no_wheel(monkeypatch):
     lacks = {"pybullet": "is not installed here"}
     monkeypatch.setattr("rockwobble.compare.runs.choice.engine_fault", lambda name: lacks.get(name, ""))
     runs = [Run(name, place) for name in ("mujoco", "pybullet", "dart") for place in ("recess", "ring")]
-    found, said = runs_here(runs)
-    assert found == [
+    chosen, said = runs_here(runs)
+    assert chosen == [
         Run("mujoco", "recess"),
         Run("mujoco", "ring"),
         Run("dart", "recess"),  # in place of PyBullet, and once
@@ -78,8 +78,8 @@ def test_a_suite_drops_missing_engines_but_not_extras(monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in packages else find(name))
     name = standard_engines()[0]
     runs = [Run(name, "recess"), Run(None, "recess"), Run("drake", "recess")]
-    found, (said,) = runs_here(runs)
-    assert found == runs[1:]
+    chosen, (said,) = runs_here(runs)
+    assert chosen == runs[1:]
     assert re.fullmatch(rf"{name} is not installed here: pip install .*; it is left out", said)
 
 
@@ -116,9 +116,9 @@ def test_each_run_is_compared_with_the_references_of_its_support(case):
     assert labels(case, Run("mujoco", "flat"), flat) == ["flat-ground model"]
     assert labels(case, Run("mujoco", "flat"), Run("pybullet", "flat")) == ["pybullet flat"]
     assert labels(case, recess, recess) == []
-    found = references_of(case, Run("mujoco", "ring", 2e-4), "mujoco ring")
-    assert list(found) == ["recess model", "mujoco ring, half the step"]
-    assert found["mujoco ring, half the step"] == Run("mujoco", "ring", 1e-4)
+    references = references_of(case, Run("mujoco", "ring", 2e-4), "mujoco ring")
+    assert list(references) == ["recess model", "mujoco ring, half the step"]
+    assert references["mujoco ring, half the step"] == Run("mujoco", "ring", 1e-4)
     for sought in ("auto", "extrapolated"):  # of the default, as the step is unknown beforehand
         assert labels(case, Run("mujoco", "ring", sought))[1].endswith(", half the default step")
 

@@ -47,15 +47,15 @@ def table_cache(folder, kind="study"):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_results_come_in_the_order_of_the_tasks(workers):
-    told: list[Progress] = []
+    progress: list[Progress] = []
     tasks = [-3, 2, -1, 5]
-    found = run_tasks(abs, tasks, workers=workers, cost=lambda task: float(task), progress=told.append)
-    assert found == [3, 2, 1, 5]
-    started = [event.label for event in told if event.state == "started"]
+    results = run_tasks(abs, tasks, workers=workers, cost=lambda task: float(task), progress=progress.append)
+    assert results == [3, 2, 1, 5]
+    started = [event.label for event in progress if event.state == "started"]
     assert started == ["5", "2", "-1", "-3"]  # longest first
-    assert [event.done for event in told if event.state == "finished"] == [1, 2, 3, 4]
-    assert told[-1].share == pytest.approx(1.0)
-    assert told[-1].left == pytest.approx(0.0)
+    assert [event.done for event in progress if event.state == "finished"] == [1, 2, 3, 4]
+    assert progress[-1].share == pytest.approx(1.0)
+    assert progress[-1].left == pytest.approx(0.0)
 
 
 @pytest.mark.slow
@@ -63,8 +63,8 @@ def test_processes_are_reused_and_brief_tasks_run_here():
     pids = run_tasks(process_of, [0] * 8, workers=2)
     assert len(set(pids)) <= 2
     assert os.getpid() not in pids
-    found = run_tasks(process_of, [1, 2, 3], workers=2, here=lambda task: task == 2)
-    assert [process == os.getpid() for process in found] == [False, True, False]
+    processes = run_tasks(process_of, [1, 2, 3], workers=2, here=lambda task: task == 2)
+    assert [process == os.getpid() for process in processes] == [False, True, False]
     # a single task has a process of its own on request
     assert run_tasks(process_of, [0], workers=2) != [os.getpid()] == run_tasks(process_of, [0])
 
@@ -77,9 +77,9 @@ def test_bad_input_is_raised_here_with_its_remote_traceback():
 
 @pytest.mark.slow
 def test_a_process_that_dies_loses_only_its_own_task(tmp_path):
-    found = run_tasks(signalled, [0, int(signal.SIGABRT), 0], workers=2)
-    assert (found[0], found[2]) == (None, None)
-    assert found[1] == FailedTask(f"the process ended with status -{signal.SIGABRT.value}")
+    results = run_tasks(signalled, [0, int(signal.SIGABRT), 0], workers=2)
+    assert (results[0], results[2]) == (None, None)
+    assert results[1] == FailedTask(f"the process ended with status -{signal.SIGABRT.value}")
     # a task whose process was killed from outside starts again
     again, once = (str(tmp_path / name) for name in ("a", "b"))
     assert run_tasks(die_once, [again], workers=2, tries=2) == [again]
@@ -125,18 +125,18 @@ def test_a_damaged_file_is_named_and_its_task_runs_again(tmp_path):
         content[place] ^= 1  # a single bit
         path.write_bytes(content)
         RAN.clear()
-        told: list[Progress] = []
+        messages: list[Progress] = []
         with table_cache(tmp_path) as cache:
-            run_tasks(counted, [1, 2], workers=1, cache=cache, progress=told.append)
+            run_tasks(counted, [1, 2], workers=1, cache=cache, progress=messages.append)
         assert RAN == [2], place
-        assert {event.damaged for event in told} == {(str(path),)}
+        assert {event.damaged for event in messages} == {(str(path),)}
         assert path.read_bytes() == whole
 
 
 def test_a_lost_task_is_not_cached(tmp_path):
     with table_cache(tmp_path) as cache:
-        found = run_tasks(killed, [1], workers=2, cache=cache)
-        assert [type(each) for each in found] == [FailedTask]
+        results = run_tasks(killed, [1], workers=2, cache=cache)
+        assert [type(each) for each in results] == [FailedTask]
         assert cache.find(1) is None
 
 
@@ -257,5 +257,5 @@ def test_a_lost_task_is_reported_in_one_line(monkeypatch, error, words):
         return lost
 
     monkeypatch.setattr(scheduler, "on_cluster", lambda *_: nullcontext((lose, lambda: 1, (OSError,))))
-    (found,) = run_tasks(abs, [1], scheduler="tcp://here:1")
-    assert found.why == words
+    (result,) = run_tasks(abs, [1], scheduler="tcp://here:1")
+    assert result.why == words

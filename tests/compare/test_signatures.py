@@ -43,21 +43,21 @@ PASS_SETTINGS = {"Run", "check", "simulate"}
 
 def public_functions() -> dict[str, Callable[..., object]]:
     """Every public function, and every method of a public class, by name."""
-    found: dict[str, Callable[..., object]] = {}
+    functions: dict[str, Callable[..., object]] = {}
     for part in PARTS:
         for name in part.__all__:
             value = getattr(part, name)
             if inspect.isclass(value) and value.__module__.startswith("rockwobble"):
                 if inspect.isfunction(value.__init__):
-                    found[name] = value.__init__
-                found |= {
+                    functions[name] = value.__init__
+                functions |= {
                     f"{name}.{own}": each
                     for own, each in inspect.getmembers(value, inspect.isfunction)
                     if not own.startswith("_") and each.__module__.startswith("rockwobble")
                 }
             elif inspect.isfunction(value):
-                found[f"{name} of {part.__name__}"] = value
-    return found
+                functions[f"{name} of {part.__name__}"] = value
+    return functions
 
 
 @pytest.mark.parametrize("name", public_functions())

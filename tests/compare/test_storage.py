@@ -42,8 +42,8 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def write(folder, kind="study", tables=("points",), **options):
-    made = Manifest(kind=kind, inputs="0" * 32, about={"extent": [1.0, 2.0]}, **MADE)
-    return write_results(folder, with_provenance(made), dict.fromkeys(tables, TABLE), **options)
+    manifest = Manifest(kind=kind, inputs="0" * 32, about={"extent": [1.0, 2.0]}, **MADE)
+    return write_results(folder, with_provenance(manifest), dict.fromkeys(tables, TABLE), **options)
 
 
 def test_files_are_written_all_or_none(tmp_path):
@@ -104,15 +104,15 @@ def test_testing_whether_a_folder_is_writable_leaves_no_trace(tmp_path):
 
 def test_a_written_manifest_is_read_back(tmp_path):
     write(tmp_path, files={"raw.csv": b"1,2\n"}, pages={"study.md": b"# Study"})
-    found = read_results(tmp_path, "study")
-    pd.testing.assert_frame_equal(found.table("points"), TABLE, check_exact=True)
-    assert found.content("raw.csv") == b"1,2\n"
-    made = found.manifest
-    assert {name: getattr(made, name) for name in MADE} == MADE
-    assert (made.about, made.pages) == ({"extent": [1.0, 2.0]}, ("study.md",))
-    assert {"python", "numpy", "rockwobble"} <= set(made.versions)
-    assert set(made.code) == {"models", "reduced", "multibody", "compare", "studies"}
-    assert re.fullmatch(r"([0-9a-f]{40}\+?)?", made.commit)
+    stored = read_results(tmp_path, "study")
+    pd.testing.assert_frame_equal(stored.table("points"), TABLE, check_exact=True)
+    assert stored.content("raw.csv") == b"1,2\n"
+    manifest = stored.manifest
+    assert {name: getattr(manifest, name) for name in MADE} == MADE
+    assert (manifest.about, manifest.pages) == ({"extent": [1.0, 2.0]}, ("study.md",))
+    assert {"python", "numpy", "rockwobble"} <= set(manifest.versions)
+    assert set(manifest.code) == {"models", "reduced", "multibody", "compare", "studies"}
+    assert re.fullmatch(r"([0-9a-f]{40}\+?)?", manifest.commit)
     assert read_about(tmp_path / "points.parquet")["inputs"] == "0" * 32
     content = json.loads((tmp_path / MANIFEST).read_text())
     assert {"kind", "inputs", "commit", "versions", "files", *MADE} <= set(content)
@@ -126,8 +126,8 @@ def test_a_damaged_file_is_named_and_not_read(tmp_path, state):
     content = bytearray(path.read_bytes())
     content[len(content) // 2] ^= 1  # a single bit
     path.unlink() if state == "missing" else path.write_bytes(content)
-    (made,) = read_manifests(tmp_path)
-    assert [file_state(tmp_path, made, f"{name}.parquet") for name in ("points", "scenes")] == [
+    (manifest,) = read_manifests(tmp_path)
+    assert [file_state(tmp_path, manifest, f"{name}.parquet") for name in ("points", "scenes")] == [
         "whole",
         state,
     ]
@@ -141,10 +141,10 @@ def test_a_second_run_replaces_only_its_own_files(tmp_path):
     write(tmp_path, kind="other", tables=("rows",))
     write(tmp_path, tables=("points",))
     assert names(tmp_path) == {"mine.txt", "points.parquet", "rows.parquet", MANIFEST}
-    assert [made.kind for made in read_manifests(tmp_path)] == ["study", "other"]
+    assert [manifest.kind for manifest in read_manifests(tmp_path)] == ["study", "other"]
     assert read_results(tmp_path, "other").table("rows")["run"].tolist() == ["a", "b"]
     write(tmp_path, kind="second")  # overwrites a file of the study, which is damaged by that
-    assert [made.kind for made in read_manifests(tmp_path)] == ["second", "other"]
+    assert [manifest.kind for manifest in read_manifests(tmp_path)] == ["second", "other"]
 
 
 def test_new_pages_leave_the_results_unchanged(tmp_path):
@@ -180,8 +180,8 @@ def test_an_installed_package_reports_no_commit_of_the_surrounding_repository(mo
 def write_claimed(folder: Path, kind: str, name: str) -> None:
     """Write results of a table under the plan for which this process has claimed the folder."""
     claim = claim_on(folder)
-    made = Manifest(kind=kind, command=claim.command if claim else "", plan=claim.plan if claim else "")
-    write_results(folder, made, {name: TABLE})
+    manifest = Manifest(kind=kind, command=claim.command if claim else "", plan=claim.plan if claim else "")
+    write_results(folder, manifest, {name: TABLE})
 
 
 def finish(folder: Path, kind: str, name: str) -> Path:

@@ -15,8 +15,8 @@ def codes(
     cylinder: Cylinder, gravity: float = 9.81, motion: GroundMotion | None = None
 ) -> list[tuple[str, str]]:
     """Return code and detail of the doubts about a case."""
-    found = doubts_of_cases([Case(cylinder, motion, duration=1.0, gravity=gravity)])
-    return [(str(each["code"]), str(each["detail"])) for each in found]
+    doubts = doubts_of_cases([Case(cylinder, motion, duration=1.0, gravity=gravity)])
+    return [(str(each["code"]), str(each["detail"])) for each in doubts]
 
 
 @pytest.mark.parametrize("factor", [1e-3, 1.0, 1e3])
@@ -49,10 +49,10 @@ def test_a_doubtful_length_is_stated_with_its_limit() -> None:
     ):
         radius = height * slenderness
         body = Cylinder.from_dimensions(base_radius=radius, height=height, mass_centre_height=centre * height)
-        found = [each for each in doubts_of_cases([Case(body, duration=1.0)]) if each["record"] == "cylinder"]
+        rows = [each for each in doubts_of_cases([Case(body, duration=1.0)]) if each["record"] == "cylinder"]
         beyond = [length for length in (height, 2.0 * radius) if not 1e-3 <= length <= 300.0]
-        assert len(found) == bool(beyond)
-        for each, length in zip(found, beyond, strict=False):
+        assert len(rows) == bool(beyond)
+        for each, length in zip(rows, beyond, strict=False):
             assert each["size"] == pytest.approx(length, rel=1e-12)
             assert each["bound"] == (300.0 if length > 1.0 else 1e-3)
             assert each["detail"] == likely(length, LENGTHS, 8.0)
@@ -63,9 +63,9 @@ def test_a_doubtful_length_is_stated_with_its_limit() -> None:
 def test_the_doubt_about_a_gravity_states_it_and_its_limit() -> None:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     for gravity in 10.0 ** np.random.default_rng(3).uniform(-1.0, 5.0, 100):
-        found = doubts_of_cases([Case(pier, duration=1.0, gravity=gravity)])
-        assert len(found) == (gravity > 25.0)
-        for each in found:
+        doubts = doubts_of_cases([Case(pier, duration=1.0, gravity=gravity)])
+        assert len(doubts) == (gravity > 25.0)
+        for each in doubts:
             assert (each["record"], each["size"], each["bound"]) == ("gravity", gravity, 25.0)
             assert each["detail"] == likely(gravity, GRAVITIES, 9.81)
 
@@ -103,8 +103,8 @@ def test_measured_records_are_plausible() -> None:
 
 
 def test_doubts_about_one_record_appear_once() -> None:
-    found = doubts_about(motions=[times(981.0, 981.0), None, times(2000.0, 2000.0), RECORD])
-    assert [(doubt["record"], doubt["code"]) for doubt in found] == [("made", "large_peak")]
+    doubts = doubts_about(motions=[times(981.0, 981.0), None, times(2000.0, 2000.0), RECORD])
+    assert [(doubt["record"], doubt["code"]) for doubt in doubts] == [("made", "large_peak")]
 
 
 @pytest.mark.parametrize("degrees", [-450.0, 1e4])

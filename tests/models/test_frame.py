@@ -73,9 +73,9 @@ def test_a_case_of_a_frame_comes_back_from_plain_values() -> None:
 def test_a_suite_file_holds_frames(tmp_path: Any) -> None:
     path = tmp_path / "frame.suite.toml"
     path.write_text(SUITE.replace("COUNT", "4"))
-    found = [case.cylinder for case in read_suite(path).cases]
+    bodies = [case.cylinder for case in read_suite(path).cases]
     pier = Cylinder.from_dimensions(base_radius=1.0, height=10.0)
-    assert found == [WobblingFrame(pier, ratio, 4) for ratio in (0.0, 4.0)]
+    assert bodies == [WobblingFrame(pier, ratio, 4) for ratio in (0.0, 4.0)]
     path.write_text(SUITE.replace("COUNT", "2"))
     with pytest.raises(ValueError, match=r"cases\[0\].cylinder: columns"):
         read_suite(path)

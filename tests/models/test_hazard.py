@@ -246,8 +246,8 @@ def test_one_of_several_sites_is_chosen(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="3 sites, from 1 to 3: choose one"):
         read(tmp_path, text)
     for site in (1, 3):
-        found = read(tmp_path, text, site=site)
-        assert found.annual_frequency == pytest.approx(np.array(RATE) / site, rel=1e-9)
+        curve = read(tmp_path, text, site=site)
+        assert curve.annual_frequency == pytest.approx(np.array(RATE) / site, rel=1e-9)
     for beyond in (0, 4):
         with pytest.raises(ValueError, match=f"from 1 to 3: got site {beyond}"):
             read(tmp_path, text, site=beyond)

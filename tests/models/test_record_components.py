@@ -90,6 +90,6 @@ def test_a_component_takes_the_direction_left_by_the_others(
 ) -> None:
     parts = [component("z"), component(None, azimuth), component(stated)]
     for given in itertools.permutations(parts):
-        found = in_order(given, "record")
-        assert [part.direction for part in found] == ["x", "y", "z"]
-        assert {part.azimuth: part.direction for part in found}[azimuth] == left
+        components = in_order(given, "record")
+        assert [part.direction for part in components] == ["x", "y", "z"]
+        assert {part.azimuth: part.direction for part in components}[azimuth] == left

@@ -393,9 +393,9 @@ def test_any_motion_is_read_with_its_directions_and_signs(
     parts = any_motion(np.random.default_rng(count))
     for sign in (1.0, -1.0):
         motion = {axis: sign * values for axis, values in parts.items()}
-        found = components(tmp_path, name, ALL[name](motion))
-        assert {part.direction for part in found} in ({"x"}, {"x", "y", "z"})
-        for part in found:
+        record = components(tmp_path, name, ALL[name](motion))
+        assert {part.direction for part in record} in ({"x"}, {"x", "y", "z"})
+        for part in record:
             due = motion[str(part.direction)]
             assert part.time_step == pytest.approx(step, rel=1e-7)  # of single precision
             assert len(part.values) == count
@@ -426,8 +426,8 @@ def test_the_peak_of_the_header_is_compared_with_that_of_the_samples(
             due = parts[str(part.direction)]
             due = due - due.mean() if name == "a.EW" else due  # NIED states the peak without the mean
             for match in said:
-                found = (float(match[1]), float(match[2]))
-                assert found == pytest.approx((ratio * np.abs(due).max(), np.abs(due).max()), rel=1e-3)
+                printed = (float(match[1]), float(match[2]))
+                assert printed == pytest.approx((ratio * np.abs(due).max(), np.abs(due).max()), rel=1e-3)
 
 
 @pytest.mark.parametrize("name", WITH_PEAKS)

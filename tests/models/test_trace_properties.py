@@ -59,11 +59,11 @@ def any_trace(seed: int, **given: Any) -> Trace:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_friction_demand_is_horizontal_over_normal_force_for_any_size(seed: int) -> None:
     trace = any_trace(seed)
-    for force, found in (
+    for force, friction in (
         (trace.contact_force, trace.friction_needed),
         (trace.top_contact_force, trace.top_friction_needed),
     ):
-        for (x, y, normal), demand in zip(force.tolist(), found.tolist(), strict=True):
+        for (x, y, normal), demand in zip(force.tolist(), friction.tolist(), strict=True):
             if math.isnan(normal):
                 assert math.isnan(demand)
             elif normal <= 0.0:

@@ -77,11 +77,11 @@ def run_release(solve_free: Callable[..., Trace]) -> Callable[..., tuple[Trace, 
     ) -> tuple[Trace, Trace]:
         cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
         release = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
-        told: list[float] = []
+        progress: list[float] = []
         case = Case(cylinder, initial=release, duration=duration)
-        trace = simulate(case, engine=engine, support=support, progress=told.append, **options)
-        assert told == sorted(told)
-        assert told[-1] == 1.0
+        trace = simulate(case, engine=engine, support=support, progress=progress.append, **options)
+        assert progress == sorted(progress)
+        assert progress[-1] == 1.0
         return trace, solve_free(cylinder, release, trace.time, rolls_out=support == "flat")
 
     return run

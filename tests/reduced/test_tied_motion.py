@@ -42,14 +42,14 @@ def test_a_release_follows_scipy(tan_alpha: float, plane: float | None, share: f
     length = share * column.base_radius
     case = rw.Case(body, initial=release, duration=3.0, tendon=STEEL, rolling_resistance=length)
     trace = reduced.simulate(case, plane=plane, rtol=1e-12)
-    own = model_of(case, plane).released(release.tilt, spin, trace.time)
+    solution = model_of(case, plane).released(release.tilt, spin, trace.time)
     # planar motion that reverses meets the jump of the couple, which eps rounds
     limit = 2e-7 if share and plane is not None else 1e-9
-    assert np.abs(trace.tilt - own[:, 0]).max() < limit * column.alpha
+    assert np.abs(trace.tilt - solution[:, 0]).max() < limit * column.alpha
     if plane is None:
-        assert np.abs(trace.rolling_angle - own[:, 2]).max() < 1e-8
+        assert np.abs(trace.rolling_angle - solution[:, 2]).max() < 1e-8
     if share:
-        lost = own[:, 4] / (1.0 + 2.0 * slab)  # per unit of the mass that gravity moves
+        lost = solution[:, 4] / (1.0 + 2.0 * slab)  # per unit of the mass that gravity moves
         assert lost[-1] > 1e-3 * trace.energy[0]
         assert np.abs(trace.energy_lost - lost).max() < 1e-8 * trace.energy[0]
 
@@ -64,8 +64,8 @@ def test_a_record_follows_scipy(plane: float | None, share: float, slab: float) 
     length = share * PIER.base_radius
     case = rw.Case(body, motion, duration=9.0, tendon=STEEL, rolling_resistance=length)
     trace = reduced.simulate(case, plane=plane, rtol=1e-12, sample_step=motion.time_step)
-    uplift, times, own = model_of(case, plane).shaken(motion.acceleration, motion.time_step, 9.0)
+    uplift, times, solution = model_of(case, plane).shaken(motion.acceleration, motion.time_step, 9.0)
     assert trace.uplift_time == pytest.approx(uplift, abs=1e-11)
     same = np.searchsorted(trace.time, times - 1e-9)
     assert trace.tilt.max() > 0.2 * PIER.alpha
-    assert np.abs(trace.tilt[same] - own[:, 0]).max() < 1e-7 * PIER.alpha
+    assert np.abs(trace.tilt[same] - solution[:, 0]).max() < 1e-7 * PIER.alpha

@@ -230,18 +230,18 @@ def _units(
     file: RecordFile, table: Table, names: Sequence[ColumnName], others: Sequence[str]
 ) -> list[str | None]:
     """Unit of each column of accelerations: its own, else that of the header or of the other columns."""
-    own = [unit_of(name.unit) if name.unit else None for name in names]
-    for name, unit in zip(names, own, strict=True):
+    units = [unit_of(name.unit) if name.unit else None for name in names]
+    for name, unit in zip(names, units, strict=True):
         if name.unit and unit is None:
             raise ValueError(f"{file.name} is in {name.unit[:20]}, allowed are {ALLOWED_UNITS}")
-    accelerates = any(own) or any(name.kind == "acceleration" for name in names)
+    accelerates = any(units) or any(name.kind == "acceleration" for name in names)
     refuse_header(file, others, table.comments, accelerates=accelerates)
     # a column with a unit of acceleration decides the meaning of the words in the header
     stated = stated_unit(file.path, [*others, *(["acceleration"] if accelerates else [])])
-    if stated is not None and any(unit not in (None, stated) for unit in own):
-        raise ValueError(f"{file.name} states two units: {next(filter(None, own))} and {stated}")
-    alike = next(iter(known)) if len(known := {unit for unit in own if unit}) == 1 else None
-    return [unit or stated or alike for unit in own]
+    if stated is not None and any(unit not in (None, stated) for unit in units):
+        raise ValueError(f"{file.name} states two units: {next(filter(None, units))} and {stated}")
+    alike = next(iter(known)) if len(known := {unit for unit in units if unit}) == 1 else None
+    return [unit or stated or alike for unit in units]
 
 
 def _rises_evenly(time: NDArray[np.float64]) -> bool:
