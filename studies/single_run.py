@@ -1,4 +1,4 @@
-"""Single run: the trace of one method, and the time at which its perturbed copies diverge."""
+"""Single run: the trace of one method, and the time at which copies of its model diverge."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class SingleRun(Results, kind="run"):
 
     @property
     def error(self) -> PeakError:
-        """Error of the peak tilt; NaN in results of earlier versions."""
+        """Error of the peak tilt; NaN, without a source, where none was estimated."""
         return PeakError(*self.facts["single_trace"].get("error", NO_ERROR))
 
     def headline(self) -> Mapping[str, Number]:
@@ -125,7 +125,7 @@ class SingleRun(Results, kind="run"):
 
 
 def _outcome(trace: Trace, scatter: float) -> Finding:
-    """Finding of the outcome; `scatter`: half range of the copies' peaks over the peak of the run."""
+    """Finding of the outcome; `scatter`: see `scatter_of`."""
     falls, peak, alpha = overturning_time(trace), trace.peak_tilt, trace.case.cylinder.alpha
     if math.isfinite(falls):
         balance = balance_of(trace.case)
@@ -192,7 +192,7 @@ def _quantities(trace: Trace, error: PeakError) -> Iterator[Finding]:
 
 
 def _demands(trace: Trace, quantity: Callable[..., Finding]) -> Iterator[Finding]:
-    """Finding on the demands of a run on friction and recess, up to its overturning time."""
+    """Findings on the demands of a run on friction and recess, up to its overturning time."""
     falls = overturning_time(trace)
     held = trace.assumptions_until(falls)
     if held is None:

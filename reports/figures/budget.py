@@ -23,7 +23,7 @@ PARTS = {
 _WHOLE = ("whole", Style(colour="#000000", dash="solid"), "")
 # least value on the logarithmic axis [alpha]
 _SMALLEST = 1e-10
-# limit of the picture height; the table has all rows
+# most bars, so that the picture can be read; the table has all rows
 _MOST = 60
 
 

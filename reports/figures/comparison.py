@@ -124,7 +124,7 @@ def _drift(view: CaseView, support: Support) -> Panel:
     """Relative distance from the circle (|T| - b)/b, at tilts large enough for a contact point."""
     layers = []
     for label, trace in view.traces.items():
-        # zero line for guided models, which keep to the circle
+        # no line for guided models, which keep to the circle
         if trace.run.support != support or (label not in view.runs and support.guided):
             continue
         tilted = trace.tilt > TILTED * np.nanmax(trace.tilt)

@@ -93,7 +93,7 @@ def _curves(results: Fragility, cylinder: str, place: int) -> Picture:
     for support, title in _PANELS.items():
         labels = [name for name, own in methods.items() if own["support"] == support]
         shown = labels if support in _GUIDED else [*guided, *labels]
-        # single curves have no ratio, unless there is only one
+        # a panel of one curve only if there is only one method
         if labels and (len(shown) > 1 or len(methods) == 1):
             panels.append(_panel(results, cylinder, shown, title))
     measure = MEASURES[str(results.facts["measure"])]

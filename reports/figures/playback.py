@@ -122,7 +122,7 @@ def _start(view: CaseView) -> float:
 
 
 def _largest_upright_tilt(view: CaseView) -> float:
-    """Largest tilt of the traces that do not overturn [rad]."""
+    """Largest tilt of all samples below 1.2 of the balance tilt [rad]."""
     tilts = [trace.tilt for trace in view.traces.values()]
     upright = [tilt[np.isfinite(tilt) & (tilt < 1.2 * balance_of(view.case))] for tilt in tilts]
     return max((float(tilt.max(initial=0.0)) for tilt in upright), default=0.0)

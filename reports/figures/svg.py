@@ -27,7 +27,7 @@ from .thinning import kept_points
 Keywords = dict[str, Any]  # arguments of a function of matplotlib
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
 WIDTH = 8.6
-# sample limit beyond the pixels of such a column
+# limit of the points of a line: more than the pixels of such a column
 _POINTS = 1600
 _BELOW = -0.48  # offset of a legend from its panel [inch]
 _GRID = "#dddddd"
@@ -131,7 +131,7 @@ def figure(picture: Picture, *, titled: bool = False, width: float | None = None
         if picture.legend == "below" and picture.entries():
             _legend(drawn, list(places.flat[: len(picture.panels)]))
         _settle(drawn)
-        # layout now, as each label asks all others; panels beside long names have separate space
+        # after the layout, as each label asks all others for their place; long names have their own room
         drawn.align_ylabels([axes for axes in drawn.axes if axes.get_ylabel()])
     return drawn
 

@@ -173,7 +173,7 @@ def pictures(results: Validity) -> list[Picture]:
     # one model with a tendon, so no second one to distinguish
     if not results.structure.tendon:
         drawn.append(_verification(tables["verification"]))
-    # no ring and no base slip with a slab
+    # no ring under a slab, and no base that slips first
     if not results.structure.slab_mass_ratio:
         drawn += [_slip(tables["slip"]), _rings(tables["rings"], uplift)]
     return [*drawn, _contact(tables, uplift)]

@@ -127,7 +127,7 @@ def check_advice(folder: Path) -> None:
     rows = re.findall(r"\| (\d+) of (\d+) \(([\d.]+) to ([\d.]+) %\) \|", text)
     assert len(rows) >= 3
     for group, row in zip(("copies", "acceleration", "velocity"), rows, strict=False):
-        # shares refer to unscaled records, demands to weaker ones as well
+        # shares are of the shaking as given: weaker shaking counts for demands alone
         runs = members[(members["group"] == group) & (members["factor"] == 1.0)]
         fell = (runs["outcome"] == "overturned").to_numpy()
         test = binomtest(int(fell.sum()), len(fell)).proportion_ci(0.95)

@@ -101,7 +101,7 @@ CERTIFICATES = {"reduced": "certify", "mujoco": "certify --engine mujoco"}
 NOT_KEPT = ("*.html", "finished")
 # tables once more, as text
 SHEETS = ("counts.csv", "counts.json", "members.csv")
-# table size above which only a command rebuilds it [bytes]
+# a study with a larger table keeps hardly any: its command makes them again [bytes]
 LARGEST = 200_000
 # of a study that lacks one, and is drawn no more: what claims of other pages rest on
 STILL_KEPT = ("contrasts.parquet", "counts.parquet")

@@ -218,7 +218,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def overturned(self) -> bool:
-        """Whether the case overturns as given; unknown once its tendon yields."""
+        """Whether the case overturns as given; False if its tendon yields, as nobody knows then."""
         return self.response["outcome"] == "overturned" and not self.yields
 
     @property
@@ -260,7 +260,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def lowest_factor(self) -> float:
-        """Lowest scale of the ground motion found to overturn; NaN where none is."""
+        """Lowest scale of the ground motion found to overturn, below any yield of a tendon; NaN if none."""
         searched = self.lowest["factor"][self.lowest["series"] == SPATIAL].max()
         beside = self.as_strong
         lowest = float(np.fmin(searched, beside["factor"][overturned(beside["peak_tilt"])].min()))
@@ -312,7 +312,7 @@ class Advice(Results, kind=KIND):
 
     @property
     def grades(self) -> dict[str, Grade]:
-        """Grade of each topic that was run, by the criteria of `grades`."""
+        """Grade of each topic that applies to the case, by the criteria of `grades`."""
         return {each.key.partition(".")[0]: cast("Grade", each.level) for each in graded(self)}
 
     def findings(self) -> Findings:
@@ -415,7 +415,7 @@ def advise(
         if moves:  # this process: starting another one takes longer than hundreds of reduced runs
             groups[COPIES] = plan.perturbed(case)
             perturbed = [simulate_run(each, model, sample_step=DEMAND_STEP) for each in groups[COPIES]]
-            # flat ground is left out: it has no anchor, and chatter of a closed base takes it minutes
+            # no other support with an anchor, or with a base that never opens, whose chatter takes minutes
             stays = case.is_release or case.friction >= case.friction_of_uplift  # holds on flat ground, too
             if stays and not case.anchor and trace.peak_tilt > CLOSED_TILT * case.cylinder.alpha:
                 few = groups[COPIES][:WEAKER_COUNT]  # few copies suffice for a ratio without part in grades

@@ -106,7 +106,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
     lengths = np.diff(trace.time, append=trace.time[-1])[moving]
     tilt, kappa = trace.tilt[moving], np.abs(trace.restraining_moment[moving]) / cylinder.base_radius
     forces = [(names, force[moving], friction[moving]) for names, force, friction in ends]
-    if not moving.any():  # a case with one moving sample
+    if not moving.any():  # one sample at rest, where none moves
         lengths = tilt = kappa = np.zeros(1)
         forces = [(names, np.array([[0.0, 0.0, 1.0]]), np.zeros(1)) for names, *_ in ends]
     lost, slips = np.zeros((2, len(lengths)), dtype=bool)
@@ -264,7 +264,7 @@ def all_alike(runs: pd.DataFrame) -> bool:
 
 
 def _most(groups: list[tuple[str, float, pd.DataFrame]], what: str) -> dict[str, Any] | None:
-    """Group in which more runs yield or overturn than a demand may leave out."""
+    """Group with the largest share of runs that yield or overturn, if above what a demand leaves out."""
     worst: dict[str, Any] | None = None
     share = 1.0 - COVERED
     for group, factor, runs in groups:
@@ -293,7 +293,7 @@ def _largest(name: str, groups: list[tuple[str, float, pd.DataFrame]]) -> dict[s
 def _together(
     name: str, groups: list[tuple[str, float, pd.DataFrame]], limits: Mapping[str, float]
 ) -> dict[str, float]:
-    """Simultaneous actions at the time of the largest shear or moment of a run, if none exceeds its limit."""
+    """Simultaneous actions at the time of the largest shear or moment of a run within all limits."""
     runs = pd.concat([each for *_, each in groups])
     load = pd.DataFrame({part: runs[f"{name}_with_{part}"].astype(float) for part in _TOGETHER})
     acting = {part: load[part] for part in _TOGETHER}

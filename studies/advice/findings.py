@@ -74,7 +74,7 @@ def _verdict(advice: Advice) -> Iterator[Finding]:
 
 
 def _motion(advice: Advice) -> Iterator[Finding]:
-    """Mode of motion, vertical component, reason for rest, limit of the tendon, and builder's tasks."""
+    """Mode of motion, vertical component, reason for rest, limit of the tendon, and uneven load."""
     yield from _mode(advice)
     yield from _vertical(advice)
     if not advice.moves and not advice.slides:
@@ -210,7 +210,7 @@ def _demands(advice: Advice) -> Iterator[Finding]:
             yield Finding(key=f"demand.{name}", values=values, runs=str(row["group"]))
     given = {name: rows[name] for name in _ACTING if name in rows and not math.isnan(rows[name]["value"])}
     for name, row in given.items():
-        # no moment without a support that supplies it, or if unknown
+        # nothing beside the normal force itself, or where no sample is within all limits
         if name == "force" or math.isnan(row["with_force"]):
             continue
         acting = {part: row[f"with_{part}"] for part in given}
@@ -411,7 +411,7 @@ def _case(advice: Advice) -> Iterator[Finding]:
             stress_weight=stress,
             factor=tendon["uplift_factor"],
             bound=tendon["initial_stiffness"],
-            # elastic limit of the tendon model
+            # largest tilt of the model: balance, or yield if earlier
             peak=min(tendon["balance_tilt"], tendon.get("yield_tilt", math.inf)),
         )
     whole = mass * (1.0 + body.slab_mass_ratio)

@@ -50,7 +50,7 @@ _CRITERIA: Mapping[str, Mapping[str, Value]] = {
 
 
 def criterion(topic: str, grade: Grade) -> Finding:
-    """One criterion: condition, key, level and values."""
+    """Criterion for a grade of a topic, in words."""
     key = f"criterion.{topic}_{grade.replace(' ', '_')}"
     return Finding(key=key, level=grade, values=_CRITERIA.get(topic, {}))
 
@@ -68,7 +68,7 @@ def grade_chance(chance: float) -> Grade:
 
 
 def graded(advice: Advice) -> Iterator[Finding]:
-    """Grade of each topic that was run, with the values that decide it."""
+    """Grade of each topic that applies to the case, with the values that decide it."""
     outcome, facts = advice.response["outcome"], advice.facts
     if outcome in NO_PEAK:
         yield Finding(key=f"trace.{outcome}", level="not satisfied")

@@ -139,7 +139,7 @@ def run_rows(
         trace = simulate_run(dataclasses.replace(case, motion=motion), model, sample_step=DEMAND_STEP)
         return member_row(trace, group, factor)
 
-    # one run represents all lower scales of a motion that never uplifts
+    # one run at rest stands for all motions too weak to uplift
     still = [each for each in cases if not each.is_release and uplift_of(each) > factor * (1.0 + _CLOSE)]
     at_rest = row(still[0]) if still else {}
     names = {id(each) for each in still}

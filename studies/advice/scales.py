@@ -48,7 +48,7 @@ _LOWEST = ["series", "factor", "confirmed", "start"]
 
 
 def scan_scales(case: Case, support: str = RECESS) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Run a case over scales of its ground motion; empty for a free response.
+    """Run a case over scales of its ground motion; empty without shaking.
 
     Returns
     -------

@@ -31,7 +31,7 @@ TOO_FEW = "too few"  # too few motions or levels for any curve
 _ITERATIONS, _HALVINGS = 60, 30
 # convergence limit of Newton's method, in standard deviations of the log intensity
 _TOLERANCE = 1e-11
-_LEVEL = 1e-9  # slope below which a share counts as constant
+_LEVEL = 1e-9  # slope up to which a curve does not rise, in the same unit
 _GROUPS = 10  # groups of a cloud, to compare shares with the curve
 
 
@@ -353,7 +353,7 @@ def spread_interval(value: float, drawn: Array, motions: int) -> Interval:
 
 
 def bands(curves: Curves, x: Array, motions: int) -> tuple[Array, Array]:
-    """Lower and the upper end (n,) of the band of a curve at logarithms of intensities (n,)."""
+    """Lower and upper end (n,) of the band of a curve at logarithms of intensities (n,)."""
     drawn = np.sort(curves.at(x), axis=0)  # NaN last
     known = np.count_nonzero(~np.isnan(drawn), axis=0)
     low, high = (np.maximum(share * (known - 1), 0.0) for share in expanded_shares(motions))

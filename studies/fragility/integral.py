@@ -34,7 +34,7 @@ from rockwobble.models.hazard import HazardCurve
 
 from .fit import Array
 
-# largest frequency [1/year]: a steeply beginning curve would exceed all numbers below it
+# largest frequency of an extended curve [1/year]: a steeply beginning curve would exceed all numbers below it
 OFTEN = 1e3
 
 
@@ -67,7 +67,7 @@ def lognormal_frequency(hazard: HazardCurve, centre: float, dispersion: float) -
 
 
 def mean_over(hazard: HazardCurve, low: Array, high: Array) -> Array:
-    """Mean annual frequency over ln theta between two hazard values each [1/year].
+    """Mean annual frequency over ln theta between each `low` and `high` [1/year].
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def frequencies_of(hazard: HazardCurve, x: Array, y: Array, uplift: Array, far: 
     tail = share * rate_at(hazard, last)
     pieces = _pieces(hazard, x, y, np.full(len(x), begin))
     total = pieces.sum(axis=1) + tail
-    # start of integration: lowest level or first hazard point; nothing is known below
+    # lowest level, or first hazard point: without runs, or hazard, below
     met = np.clip(x[:, 1], begin, end)
     at_met = np.array([np.interp(*each) for each in zip(met, x, y, strict=True)])
     nothing_run = end < x[:, 1]

@@ -144,12 +144,12 @@ class Resampled:
     counts: Array
 
     def over(self, other: Resampled) -> Resampled:
-        """Ratio to another frequency from equal resamples."""
+        """Ratio to another frequency from the same resamples."""
         with np.errstate(invalid="ignore"):  # zero over zero has no ratio
             return replace(self, logs=self.logs - other.logs, parts=self.parts - other.parts)
 
     def interval(self, motions: int) -> Interval:
-        """Value with its 95 % interval; ends are NaN if all motions are equal."""
+        """Value with its 95 % interval; ends are NaN if all motions are equal, or at 0 or infinity."""
         value = float(np.exp(self.logs[0]))
         errors = np.sqrt((self.counts * self.parts**2).sum(axis=1))
         if not (0.0 < value < math.inf and errors[0] > 1e-9):
@@ -172,7 +172,7 @@ def _few_parts_factor(parts: Array) -> float:
 
 
 def resampled(terms: Array, weights: Array) -> Resampled:
-    """Sum of the column means of terms (R, G), for all motions and for each set of weights (B, R)."""
+    """Logarithm of the sum of the column means of terms (R, G), of all motions and each of weights (B, R)."""
     known = ~np.isnan(terms)
     values = np.where(known, terms, 0.0)
     counts = np.vstack([np.ones((1, len(terms))), weights])
@@ -249,7 +249,7 @@ def risk_tables(
     return pd.DataFrame(rows), pd.concat(parts, ignore_index=True)
 
 
-# shares of the frequency from which it is said what they rest on
+# shares of the frequency above which a caution is stated
 _OPEN, _SCALED = 0.1, 0.5
 _SHARES = ("head_share", "tail_share", "far_share")
 UNDECIDED = "inconclusive"

@@ -164,7 +164,7 @@ def test_group_table_counts_overturned_members_and_excludes_failed_ones(advice):
     assert (group["runs"], group["failed"], group["overturned"]) == (20, 1, 2)
     assert group["chance"] == 2 / 19
     assert group["chance_low"] < 2 / 19 < group["chance_high"]
-    assert group["peak_tilt_95"] == math.inf  # 2 of 19 exceed 5 %
+    assert group["peak_tilt_95"] == math.inf  # 2 of 19 are more than 5 %
     assert group["covered"] == 19  # ceil(0.95 19)
     stands = members.loc[copies[3:], "peak_tilt"]
     assert stands.min() <= group["peak_tilt_50"] <= stands.max()
@@ -429,7 +429,7 @@ def test_demands_do_not_decrease_with_record_scale(body, motion, monkeypatch):
 
 
 @pytest.mark.slow
-def test_case_without_uplift_is_not_compared_with_the_other_support(monkeypatch):
+def test_case_with_a_closed_base_is_not_compared_with_the_other_support(monkeypatch):
     """Nothing can be compared, and chatter of the rim costs the flat-ground model minutes."""
     monkeypatch.setattr(study, "other_records", lambda _: ({}, ""))
     nothing = scan_scales(Case(PIER, GroundMotion(np.zeros((9, 2)), 0.1)))
@@ -593,14 +593,14 @@ def test_identical_copies_count_as_one_run(advice):
     assert not with_table(advice, members=members).groups["single"].any()
 
 
-def test_topics_without_runs_get_no_grade():
+def test_topics_without_runs_are_graded_not_tested():
     up = el_centro_1940(vertical=True).acceleration[:800] * [0.0, 0.0, 7.0]
     advice = advise(Case(PIER, GroundMotion(up, 0.01, "up")), copies=20)
     assert (advice.moves, len(advice.lowest), advice.copies_differ) == (True, 0, False)
     grades = advice.grades
     for topic in ("overturning", "intensity", "engine"):
         assert grades[topic] == "not tested"
-    # base lifts without opening: no demands on ground and recess
+    # lifts without a tilt that opens its base: no demands on ground and recess
     assert grades["contact"] == "not tested"
     assert advice.response["tolerance"] == pytest.approx(0.1 * advice.peak)
 
@@ -762,7 +762,7 @@ def test_advice_states_uplift_stiffness_and_balance_of_a_tendon(no_records: None
     )
     assert (elastic.grades["overturning"], elastic.yielded) != ("not tested", tied.yielded)
     assert "tendon" not in plain.grades
-    # search scale start follows the raised uplift
+    # the search starts at the raised uplift scale
     starts = tied.lowest["start"].to_numpy() / plain.lowest["start"].to_numpy()
     assert starts == pytest.approx(1.5, rel=1e-12)
     with pytest.raises(ValueError, match="is for support 'recess', got 'flat'"):

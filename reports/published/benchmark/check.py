@@ -205,7 +205,7 @@ class Case:
         return motion_at(self.table["time"] * run.get("time_unit", 1.0), own["tilt"], azimuth, path)
 
     def judge(self, motions: Motions) -> tuple[Outcome, ...]:
-        """Outcome of every criterion; what some runs only tell is not judged."""
+        """Outcome of every criterion; one whose value is unknown for some run is not judged."""
         outcomes = []
         for one in self.accept["criteria"]:
             runs = [name for name in one.get("runs", self.runs) if name in motions]

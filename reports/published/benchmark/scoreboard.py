@@ -51,7 +51,7 @@ def entries() -> list[dict[str, Any]]:
 
 
 def passes(entry: dict[str, Any]) -> int:
-    """Number of runnable cases that an entry passes."""
+    """Number of cases run that an entry passes."""
     return sum(one["verdict"] in ORDER[:3] for one in entry["cases"].values())
 
 
@@ -94,7 +94,7 @@ def rows(results: list[dict[str, Any]]) -> list[list[str]]:
 
 
 def makers(results: list[dict[str, Any]]) -> list[list[str]]:
-    """Table of the entries: code, version, settings, time step."""
+    """Table of the entries, one row each: version, settings, cost, machine and commits."""
     lines = [["code", "version", "settings", "time step", "processor time of a step", "machine", "commits"]]
     for entry in results:
         cost = entry["seconds_a_step"]

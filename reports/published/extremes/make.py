@@ -105,7 +105,7 @@ def _codes(cell: str) -> list[str]:
 
 
 def claims(results: Extremes) -> list[str]:
-    """Silently wrong runs, and runs refused without the one allowed reason."""
+    """Silently wrong runs, and runs refused for a reason other than `_REFUSALS`."""
     return [
         f"{row['extreme']} {row['value']}, {row['method']}: {row['verdict']} {row['refusal']}"
         for row in results.extremes.to_dict("records")

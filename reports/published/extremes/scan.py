@@ -42,7 +42,7 @@ _PLANAR_MODEL = Run(None, "flat", plane=0.0)
 FINE = AGREEMENT  # of alpha, or of the angle of turn
 # relative to the energy that balances the cylinder on its rim
 _ENERGY = 1e-5
-_TIGHT, _REFERENCE = 1e-12, 1e-10  # tight and reference tolerances
+_TIGHT, _REFERENCE = 1e-12, 1e-10  # tolerances of a model: to check it, and as reference of engines
 # what makes an engine leave its reference: no wall, which the reference at half the step meets as well; a
 # reduced model errs only where the side of a pass is undetermined
 _EXPLAINS = frozenset(
@@ -335,7 +335,7 @@ def _engine(condition: Condition, run: Run, trace: Trace) -> Verdict:
     reference = _simulate(case, other, condition)
     if reference.outcome == "failed":
         return Verdict(verdict="no reference", reference=name, until=0.0)
-    # later divergence does not matter, except for the outcome
+    # a fall after the end of the case counts by its outcome alone
     held = reference.assumptions_until(case.length) if name == "model" else None
     until = min((fact.time for fact in held.breaches), default=math.inf) if held else math.inf
     error, begins = _tilt_error(reference, trace)

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 TAN_ALPHA = 0.1
 LARGE = 20.0  # [m] from which on a cylinder is "large": the upper third of the paper's sizes
-_PROBES = 5  # random intensities below each lowest one of a coarse grid; a coarse run is only a preview
+_PROBES = 5  # random intensities below each lowest one, per intensity of the grid: few on a coarse one
 _EVERY = 0.95  # share of the sizes that may pass for all of them: single ones are a matter of chance
 
 

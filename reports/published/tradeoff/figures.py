@@ -39,7 +39,7 @@ _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact") 
 
 
 def pictures(results: Tradeoff) -> list[Picture]:
-    """Picture of each problem with shared axes; variants of one line are lines of their own."""
+    """Picture of each problem; its panels share their axes."""
     return [_picture(results, name) for name in TITLES if (results.points["problem"] == name).any()]
 
 

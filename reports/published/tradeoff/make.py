@@ -53,7 +53,7 @@ def page_of(results: Tradeoff) -> Page:
 
 
 def _answer(least: float, largest: float) -> str:
-    """Cost of an engine, on two lines of the document; NaN if it never reaches the asked error."""
+    """Cost of an engine, on two lines of the document; `least` is NaN if none reaches a target error."""
     if not least > 0.0:
         return "No engine reaches any of the target errors."
     return (
@@ -64,7 +64,7 @@ def _answer(least: float, largest: float) -> str:
 
 
 def _of_scipy(least: float, largest: float) -> str:
-    """Cost of the cheapest scipy solver; empty if none reaches the asked error."""
+    """Cost of the cheapest scipy solver; empty if `least` is NaN: none reaches a target error."""
     if not least > 0.0:
         return ""
     return (

@@ -41,7 +41,7 @@ TOLERANCE_SCALE = np.array([1e-3, 1e-3, 1.0, 1e-3])
 _SWING = 10.0  # of sqrt(R/g): for which a swing is followed past the end
 _AFTER_UPLIFT = 2e-3  # [s]
 _INSTANT = 1e-9  # of motion, for the momentum of a release [s]
-# unit of all computing times: the recess model by default
+# unit of all computing times: the recess model at its default tolerance
 BASE_LINE = str(Run(None, RECESS))
 BASE_TOLERANCE = 1e-8
 REST_PANEL = "rest threshold"
@@ -125,14 +125,14 @@ def _model_methods(problem: Problem, quick: bool) -> Iterator[Method]:
         solve = partial(_by_model, problem, support, reduced.REST_TILT)
         solved = {rtol: partial(solve, rtol) for rtol in tolerances}
         yield from _line(str(Run(None, support)), "reduced", solved, support=support)
-    # no rest on still ground
+    # a release on still ground never rests
     for rest_tilt in () if problem.name == "turn" else (FINE_REST_TILT, 1e-5, 0.1):
         solved = {rtol: partial(_by_model, problem, RECESS, rest_tilt, rtol) for rtol in tolerances}
         yield from _line(rest_line(rest_tilt), "reduced", solved, panel=REST_PANEL)
 
 
 def rest_line(rest_tilt: float) -> str:
-    """Line of the recess model over values of its rest threshold."""
+    """Name of the line of the recess model with this rest threshold."""
     return f"rest threshold {rest_tilt:g}"
 
 
@@ -303,7 +303,7 @@ def _by_scipy(
 
 
 def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
-    """Answer of a `SOLVERS` solver to a problem; nothing if it gave up or stepped over a pass."""
+    """Answer of a `SOLVERS` solver to a problem; empty if it gave up or a tilt is negative."""
     integrate = partial(solve_ivp, rates.function, method=name, rtol=rtol, atol=rtol * TOLERANCE_SCALE)
     step, reference = problem.sample_step, problem.references[RECESS].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)

@@ -30,7 +30,7 @@ from rockwobble.reports.published.tradeoff.problem import (
 )
 from rockwobble.reports.published.tradeoff.scenes import scene_costs
 
-# runs are repeated up to this time, to hide the clock tick [s]
+# shorter runs are repeated, to hide the clock tick [s]
 _SHORT = 2e-3
 _REPEATS = 5
 ROUNDS = 3  # of a single case; an ensemble has as many as members
@@ -241,7 +241,7 @@ def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
 
 
 def engine_factors(points: pd.DataFrame) -> tuple[float, float]:
-    """Least and largest cost of an engine in a recess at a given error; NaN if never reached.
+    """Least and largest cost of an engine in a recess at a target error; NaN if none reaches any.
 
     In computing times of the recess model at its default tolerance, as everywhere.
     """
