@@ -138,7 +138,7 @@ def require_each(name: str, values: object, kind: type) -> None:
 
 def quoted(value: object) -> str:
     """A bad value for a message: itself, or its kind where that would be longer than a line."""
-    text = repr(value)
+    text = repr(value.tolist() if isinstance(value, np.ndarray) else value)
     return text if len(text) <= _MOST and "\n" not in text else brief(value)
 
 
