@@ -278,7 +278,7 @@ def _row(trace: Trace) -> pd.DataFrame:
 
 
 def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
-    """One row per method, see `Ensemble.methods`; `methods` gives the reduced model of each support."""
+    """One row per method, see `Ensemble.methods`; `methods` names the own model of each."""
     rows = []
     for method, own in methods.items():
         runs = members[members["method"] == method]

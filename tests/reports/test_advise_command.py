@@ -70,7 +70,7 @@ def options_of(records: Path, **names: str) -> list[str]:
             {"overturning": "not tested", "intensity": "not tested"},
         ),
         ({"x": "x", "y": "y"}, ["--support", "recess", "--friction", "0.1"], {"friction": "not satisfied"}),
-        # one of six exceeds 5 %: a one-sample spike at a near pass counts
+        # one of six is more than 5 %: a one-sample spike at a near pass counts
         ({"x": "x", "y": "y"}, ["--support", "flat", "--friction", "3"], {"friction": "satisfied"}),
         ({}, ["--release-tilt-deg", "5", "--rolling-rate", "0.5"], {"overturning": "satisfied"}),
     ],

@@ -79,7 +79,7 @@ def test_default_run_uses_engines_that_load(damaged):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["compare", "ensemble", "view", "advise"])
-def test_command_without_engine_option_reports_the_substituted_engine(
+def test_command_without_engine_option_reports_the_engine_that_does_not_load(
     damaged, in_this_process, six_records, capsys, command
 ):
     other = registry.standard_engines()[1]

@@ -89,7 +89,7 @@ def test_findings_state_the_verdict_and_the_numbers_of_each_main_pair():
     assert keys(made_up(1.001)) == {"equivalent", "pair", "significant", "overturning_alike"}
 
 
-def test_too_few_members_give_no_interval_and_failed_ones_bounds():
+def test_few_members_give_no_ratio_and_failed_ones_bound_the_median():
     ensemble = made_up()
     few = ensemble.members[ensemble.members["member"].isin([f"record {i}" for i in range(1, 6)])]
     unsure = ensemble_of(few, ensemble.facts)

@@ -257,7 +257,7 @@ def test_undecided_and_overturned_runs_have_no_peak(tmp_path: Path):
         )
         for rate in (rate_to_lie_down(slender, tendon, excess) for excess in (-1e-6, 1e-6))
     ]
-    # rim held with creep only, which needs more steps than the page has
+    # held on its rim but for a creep, which needs more steps than the page has
     squat = Cylinder(semidiagonal=2.95, tan_alpha=1.46)
     start, resistance = InitialState(squat.alpha - 0.01), 0.1 * squat.base_radius
     creeps = Problem(Case(squat, initial=start, duration=12.0, rolling_resistance=resistance), "recess")

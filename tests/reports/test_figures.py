@@ -156,7 +156,7 @@ def test_distribution_steps_count_members_without_a_value():
     assert [*zip(x, share, strict=True)] == [(0.0, 0.0), (0.1, 0.25), (0.4, 0.5), (1.0, 0.5)]
 
 
-def test_stacked_bars_are_contiguous():
+def test_bars_are_drawn_from_start_to_end():
     places = np.zeros(1)
     bars = Bars(places=places, start=places + 0.4, end=places + 1.0, colours=["#000000"], texts=["1e-3"])
     panel = Panel(x=Axis(label="share", unit="-"), y=list_axis(["run"]), layers=[bars])

@@ -25,7 +25,7 @@ def test_progress_is_worded_by_share_and_time(far, words):
     assert sentence(Progress(label="a", state="finished", **far)) == words
 
 
-def test_progress_names_running_tasks_every_ten_seconds(capsys, monkeypatch):
+def test_progress_is_stated_at_once_and_every_ten_seconds(capsys, monkeypatch):
     now = 0.0
     monkeypatch.setattr("rockwobble.reports.console.time.monotonic", lambda: now)
     with shown_progress("checks") as tell:

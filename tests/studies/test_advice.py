@@ -359,7 +359,7 @@ def test_simultaneous_forces_are_within_the_demands(beyond, support):
     acts_within_its_rows(demands)
     shear = demands.set_index("demand").loc["shear"]
     assert (shear["value"], shear["covered"]) == (0.119, 19)  # independent of simultaneous actions
-    held = beyond == (0.119, 1.1, 0.05) and support == "flat"  # no moment in these cases
+    held = beyond == (0.119, 1.1, 0.05) and support == "flat"  # on flat ground a moment has no limit
     expected = beyond if held else (0.117, 1.1, 0.005)
     assert tuple(shear[[f"with_{part}" for part in ("shear", "force", "moment")]]) == expected
 

@@ -116,7 +116,7 @@ def test_a_run_exceeds_the_limits_below_its_peak():
         np.testing.assert_array_equal(exceedance(table, limit), np.array(values, dtype=float))
 
 
-def test_only_one_of_several_bodies_is_stated_with_its_size(study):
+def test_bodies_are_stated_with_their_sizes_only_if_several(study):
     (body,) = (each for each in study.findings() if each.key == "fragility.body")
     assert set(body.values) == {"name", "factor"}
     facts = {**study.facts, "cylinders": dict.fromkeys("ab", study.facts["cylinders"][body.runs])}

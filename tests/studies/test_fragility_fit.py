@@ -205,7 +205,7 @@ def test_dispersion_interval_is_reflected_about_the_estimate():
     assert spread_interval(0.5, np.zeros(100), 22).high == math.inf
 
 
-def test_band_contains_its_curve_and_is_missing_if_all_resamples_agree():
+def test_band_contains_its_curve_and_has_no_width_if_all_resamples_agree():
     sample = stripes(np.random.default_rng(5), np.log(np.geomspace(1.0, 12.0, 12)))
     curves = sample.curves(resamples(22, 300, 0))
     x = np.log([1.0, 3.0, 4.0, 6.0, 12.0])

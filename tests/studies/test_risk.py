@@ -373,7 +373,7 @@ def test_each_level_uses_only_its_listed_motions() -> None:
         run.risk(SITE)
 
 
-def test_analyses_needing_one_motion_set_refuse_motions_by_level() -> None:
+def test_motions_by_level_refuse_other_levels_and_ambiguous_names() -> None:
     pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     a, b = rw.synthetic_motions(2, peak=1.0, seed=4)
     with pytest.raises(ValueError, match="have levels of their own"):
@@ -388,10 +388,10 @@ def test_analyses_needing_one_motion_set_refuse_motions_by_level() -> None:
 @pytest.mark.parametrize(
     ("lowest", "least", "most"), [(100.0, 1.0, 1.0), (5.05, 1.0, 1.0), (0.6, 0.0, 0.999)]
 )
-def test_record_scale_factors_above_5_are_flagged(
+def test_record_scale_factors_above_5_count_as_far(
     fragility: rw.studies.Fragility, lowest: float, least: float, most: float
 ) -> None:
-    assert fragility.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # no factors for synthetic motions
+    assert fragility.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # factors on synthetic motions are never far
     more = lowest / fragility.points["uplift_scale"].min()
     points = fragility.points.assign(synthetic=False, scale=more * fragility.points["scale"])
     points = points.assign(uplift_scale=more * points["uplift_scale"])
