@@ -509,7 +509,7 @@ def _has_default_step(method: Method) -> bool:
 
 KEYS = ["cylinder", "motion", "step"]
 _OF_RUN = ["peak_tilt", "outcome", CONTACT_LOST, SLIDES]
-_ENDS = [*NO_PEAK, "overturned", YIELDED]  # outcomes by decreasing severity
+_ENDS = [*NO_PEAK, "overturned", YIELDED]  # outcomes in order of precedence
 
 
 def worse_plane(runs: pd.DataFrame) -> pd.DataFrame:

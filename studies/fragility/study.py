@@ -131,7 +131,7 @@ class Fragility(Results, kind=KIND):
         }
 
     def median_or_bound(self, cylinder: str, median: float) -> float | str:
-        """Median as text; as a bound, such as "> 12", if it lies beyond the intensities run."""
+        """Median; a bound in words, such as "> 12", if it lies beyond the intensities run."""
         if math.isnan(median) or 0.0 < median < math.inf:
             return float(median)
         run = self.counts.loc[self.counts["cylinder"] == cylinder, "intensity"]

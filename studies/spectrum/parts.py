@@ -283,6 +283,6 @@ def run_part(part: SpectrumPart) -> pd.DataFrame:
 
 
 def blocks_of_sizes(count: int) -> list[range]:
-    """Indices of the sizes of each part: one part per thread, or few sizes with few threads."""
+    """Indices of the sizes of each part: as many as there are threads, at least `_SIZES`."""
     step = max(_SIZES, usable_cpus())
     return [range(first, min(first + step, count)) for first in range(0, count, step)]

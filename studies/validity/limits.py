@@ -461,10 +461,10 @@ def _releases(tables: Tables) -> Iterator[Finding]:
 def _forces(tables: Tables, structure: Structure) -> Iterator[Finding]:
     free, peaks, slip = (tables[name] for name in ("free_response", "peaks", "slip"))
     yield _finding("force.friction", ratio=largest(free["friction"] / free["tan_alpha"]))
-    # slip is counted at the base; slip under a slab appears as tilt error or energy end of a run
+    # slip is counted at the base; under a slab it shows as a tilt error, or as energy that ends the run
     slipped = (slip[["slip", "tilt_rms"]] > SLIPPED).any(axis="columns") | slip["outcome"].isin(NO_PEAK)
     slips_at, sticks = largest(slip.loc[slipped, "share"]), slip.loc[~slipped, "share"]
-    # no sticking base if it slips at one release
+    # a friction at which any release slips does not count as sticking
     values = {"share": slips_at, "bound": least(sticks[~(sticks <= slips_at)])}
     if not structure.slab_mass_ratio:  # only without a slab, as slip at its base is then all slip
         nearest = slip[slip["share"] == slips_at]

@@ -27,7 +27,7 @@ from ..plans import TendonPlan
 # coordinates of a point, by name
 RELEASE = ("tan_alpha", "release", "spin")
 POINT = ("tan_alpha", "semidiagonal", "intensity")
-# tables with motions and methods
+# names of motions and methods in tables
 FREE, EL_CENTRO = "free response", "El Centro 1940"
 PERTURBED = "perturbed copy"
 HALVED = f"{RING}, half the step"

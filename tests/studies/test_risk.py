@@ -391,7 +391,7 @@ def test_motions_by_level_refuse_other_levels_and_ambiguous_names() -> None:
 def test_record_scale_factors_above_5_count_as_far(
     fragility: rw.studies.Fragility, lowest: float, least: float, most: float
 ) -> None:
-    assert fragility.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # factors on synthetic motions are never far
+    assert fragility.risk(SITE)["far_share"].tolist() == [0.0, 0.0]  # synthetic motions are never far
     more = lowest / fragility.points["uplift_scale"].min()
     points = fragility.points.assign(synthetic=False, scale=more * fragility.points["scale"])
     points = points.assign(uplift_scale=more * points["uplift_scale"])
