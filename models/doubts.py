@@ -36,7 +36,7 @@ GRAVITIES: Mapping[str, float] = {"ft/s2": 0.3048, "in/s2": 0.0254, "cm/s2": 1e-
 _USUAL_LENGTH, _USUAL_GRAVITY = 8.0, 9.81  # [m], of a pier, and [m/s^2]
 # [t/m^3], mass over the volume of the cylinder: from foam to more than the densest metal
 LIGHTEST, DENSEST = 0.01, 23.0
-# [weights of a column], and these per base radius: a weaker tendon has no effect
+# [weights of a column], and these per base radius: a weaker tendon has hardly an effect
 WEAKEST = {"prestress": 0.02, "stiffness": 0.1}
 STRONGEST = 1e3  # prestress [weights of a column]
 
@@ -241,7 +241,7 @@ def _gravity_doubts(gravity: float) -> Iterator[Diagnostic]:
 
 
 def _mass_doubts(cylinder: RockingBody, mass: float | None) -> Iterator[Diagnostic]:
-    """Doubt about a mass [t] beyond that of any solid of this volume: "unlikely_mass", size in t/m3."""
+    """Doubt about a mass [t] unlike that of any solid of this volume: "unlikely_mass", size in t/m3."""
     if mass is None:
         return
     density = mass / (math.pi * cylinder.base_radius**2 * 2.0 * cylinder.half_height)
@@ -250,7 +250,7 @@ def _mass_doubts(cylinder: RockingBody, mass: float | None) -> Iterator[Diagnost
 
 
 def _tendon_doubts(tendon: Tendon) -> Iterator[Diagnostic]:
-    """Doubt about a prestress or a stiffness beyond those of tendons: "unlikely_tendon", with its detail."""
+    """Doubt about a prestress or a stiffness unlike those of tendons: "unlikely_tendon", with its detail."""
     for name, least in WEAKEST.items():
         size = getattr(tendon, name)
         most = STRONGEST if name == "prestress" else math.inf

@@ -19,7 +19,7 @@ _WRITERS = "rockwobble.words"  # group of entry points in which a package with t
 
 Level = Literal["note", "satisfied", "not tested", "caution", "not satisfied"]
 Grade = Literal["satisfied", "not tested", "caution", "not satisfied"]
-#: Levels, the best first; a finding without a grade is a note.
+#: Grades, the best first; a finding without a grade is a note.
 GRADES: tuple[Grade, ...] = ("satisfied", "not tested", "caution", "not satisfied")
 #: A number, a text, a list of texts, or a number with the ends of its 95 % interval.
 Value = float | int | str | tuple[str, ...] | tuple[float, float, float] | None

@@ -200,7 +200,7 @@ def find_step(
     while steps[-1] > SMALLEST * unit_time * 1.5:
         steps.append(0.5 * steps[-1])
     parts = shares(steps)
-    best, coarser = None, None  # the best run so far, and the run before the last
+    best, coarser = None, None  # the best run so far, and the last run
     entries: list[Closeness] = []  # closeness of each run up to the best
     verdict, spent = "still_changes", 0.0
     for index, step in enumerate(steps):

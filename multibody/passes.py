@@ -120,8 +120,8 @@ def _vertex(values: Array) -> tuple[float, float]:
     return offset, middle + 0.5 * slope * offset
 
 
-# [s] at the reference size. A base that rocks by the 1e-5 alpha at which it counts as closed has a period of
-# 8 ms, at any slenderness; a tilt below that for longer than two such swings is a rest.
+# [s] at the reference size. A base that rocks by the 1e-5 alpha at which it counts as closed rises and
+# falls in 8 ms, at any slenderness; a tilt below that for longer than two such swings is a rest.
 SHORTEST = 0.02
 
 

@@ -48,7 +48,7 @@ class Body:
 
     @property
     def effective_mass(self) -> float:
-        """Mass at the mass centre with the weight of column and slab, which moves twice as far [-]."""
+        """Mass at the mass centre with the work of gravity on column and slab, moved twice as far [-]."""
         return 1.0 + 2.0 * self.slab_mass_ratio
 
     @property

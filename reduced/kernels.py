@@ -68,7 +68,7 @@ def integrate_resisted_flat(body: Body, options: Options, task: Task) -> Integra
 
 @kernel
 def momentum_of_release(body: Body, tilt: float, rolling_rate: float) -> float:
-    """Momentum L = B phi' of a release [m^2/s]; compiled apart, which takes longer than a run."""
+    """Momentum L = B phi' of a release [m^2/s]; an entry point: it takes longer to compile than a run."""
     return spin_momentum(body, tilt, rolling_rate)
 
 
@@ -96,7 +96,7 @@ def load(model: str) -> None:
 
 @contextmanager
 def interrupted_after() -> Iterator[None]:
-    """Decorator: a Ctrl-C within an entry point that returns a named tuple is raised after it.
+    """Context manager: a Ctrl-C within an entry point that returns a named tuple is raised after it.
 
     What makes that tuple runs as Python code, which raises an interrupt that waits, and numba takes the tuple
     that is then missing for one: the process ends by a fault.

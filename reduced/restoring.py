@@ -195,7 +195,7 @@ def surely_overturns(body: Body, theta: float, strongest: float, lightest: float
 
 @inlined
 def _one(body: Body, v: float) -> float:
-    """The factor u without a tendon, 1: no root, which would change the rounding."""
+    """1 in place of u, which is not used without a tendon: a root would change the rounding."""
     return 1.0
 
 
@@ -211,9 +211,10 @@ half_cosine = by_body(_one, _half_cosine)
 def _coefficient_alone(
     body: Body, weight: float, s: float, v: float, u0: float, order: int, c: NDArray[np.float64], place: int
 ) -> float:
-    """Coefficient of `order` of r without a tendon, from those of the weight, of s and of v.
+    """Coefficient of `order` of r: that of the weight; with a tendon from those of s and of v, too.
 
-    That of u is written to `c` behind `place`, where those of lower order stand; `u0` is that of order 0.
+    With a tendon that of u is written to `c` behind `place`, after those of lower order; `u0` is that of
+    order 0.
     """
     return weight
 

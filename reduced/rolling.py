@@ -96,7 +96,7 @@ def twist_share(body: Body, s: float, c: float) -> float:
 
 @inlined
 def rolling_momentum(body: Body, theta: float, Lambda: float, S: float) -> float:
-    """Momentum B phi' [m^2/s], Lambda and the reduction of both by the twist rate."""
+    """Momentum B phi' = Lambda + G tau' [m^2/s]."""
     s, c = sin(theta), cos(theta)
     t = s / (1.0 + c)
     H = base_inertia(body, t)

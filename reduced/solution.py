@@ -22,7 +22,7 @@ from .problem import Problem, ground_at, in_plane
 if TYPE_CHECKING:
     import pandas as pd
 
-# columns of a state that stand in the six columns, by number of variables
+# number of columns of a state that are among the six columns, by number of variables
 _WIDTHS = {size: min(kernels.SIZES[name.split()[-1]], 6) for name, size in kernels.SIZES.items()}
 # Parts of a step at which the demands are looked at: between two of them they are close to a parabola. A run
 # of a million steps, which is chatter, has fewer.

@@ -266,7 +266,7 @@ def _signals(trace: Trace) -> Array:
 
 
 def _difference(copy: Array, values: Array) -> Array:
-    """Difference (n, 9), up to the end of the shorter motion."""
+    """Largest difference so far (n, 9), up to the end of the shorter motion."""
     apart = np.zeros_like(values)
     count = min(len(copy), len(values))
     apart[:count] = np.nan_to_num(np.abs(copy[:count] - values[:count]))

@@ -162,7 +162,7 @@ _ALL = Bound(0.0, "the protocol of an engine")
 _CHUNKS = Bound(1e-9, "what is carried from one call to the next, and no more", "m")
 _START = Bound(1e-6, "of rates: a central difference over two steps")
 _FREE_FALL = Bound(2.0, "no acceleration of the mass centre is larger", "g")
-# below the energy at balance, so that the run ends before its next maximum
+# below the energy at balance: else the run would be followed to its next maximum
 _STATE = InitialState(0.12, tilt_rate=0.05, rolling_angle=-2.0, rolling_rate=0.5)
 _FIELDS = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass")
 _QUIET = """import json, sys, rockwobble as rw

@@ -43,8 +43,8 @@ from .subject import Simulate
 # factor on the difference of two steps, whose error is once or twice as large
 CLEAN, WIDE = 5.0, 10.0
 LEAST = 1e-5  # [alpha] error of contact at any step
-# state of the cylinder when the strongest motion begins: tilt over alpha, rolling rate and length in units of
-# its time scale, and strength of the motion over the uplift threshold
+# strongest part of a motion: tilt over alpha and rolling rate of the cylinder at its start, its length, both
+# in units of the time scale, and its strength over the uplift threshold
 _LEAN, _SPIN, _LENGTH, _STRENGTH = 0.4, 0.5, 2.0, 0.5
 # diagnostics after which the assumptions of its model do not hold
 _LIMITS = ("slip", "lift_off", "tension", "friction_needed", "wall_contact", "unresolved_pass", "side")

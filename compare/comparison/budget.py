@@ -298,7 +298,7 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> list[Limit | None]
         for (index, _), trace in zip(wanted, finer, strict=True):
             traces[index].append(trace)
 
-    # also zero, where no run was at the step itself
+    # zero halvings, too, where no run was at the step itself
     every = list(enumerate(refined))
     halve([(index, times) for index, each in every for times in range(not each.extrapolated, _ALWAYS + 1)])
     halve([(index, _AT_MOST) for index, each in every if _is_uncertain(each, traces[index])])

@@ -185,7 +185,7 @@ def _divergence(case: Case, reference: Trace, other: Trace, tolerance: float) ->
 
 def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
     if own.run.loses_at_impact:
-        return length  # the copy closes its base as an engine does
+        return length  # the model closes its base as an engine does
     close = np.asarray(own.passes["minimum_tilt"], dtype=np.float64) < contact_resolution
     times = np.asarray(own.passes["time"], dtype=np.float64)[close]
     return float(min([*times[:1], *landings(own)[:1], length]))

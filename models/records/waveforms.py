@@ -108,7 +108,7 @@ def _join(file: RecordFile, name: str, parts: Iterable[Waveform]) -> Waveform:
 
 
 def require_accelerations(file: RecordFile, name: str, waveform: Waveform) -> NDArray[np.float64]:
-    """Samples of a channel; refused where they are counts or no accelerations.
+    """Samples of a channel; refused where they are counts or not finite.
 
     Raises
     ------

@@ -210,7 +210,7 @@ def make_scene(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene
 
 
 def _add_slab(plant: Any, graph: Any, contact: Any, mass: float) -> None:
-    """Add the slab, a body on three slides with a half space below it."""
+    """Add the slab, a body on three slides, with a half space that faces down."""
     from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, HalfSpace
     from pydrake.math import RigidTransform, RotationMatrix
     from pydrake.multibody.tree import PrismaticJoint, SpatialInertia
@@ -387,7 +387,7 @@ class _DrakeStepper(Leapfrog):
         length = math.hypot(*turned)
         if not math.isfinite(length):
             raise RuntimeError("the orientation is not finite")
-        # the rate times the step extrapolates its elongation
+        # the rate times the step lengthens the quaternion, which is normalised
         moved = [at + step * by for at, by in zip(position, speed, strict=True)]
         self._place = [*(each / length for each in turned), *moved]
 

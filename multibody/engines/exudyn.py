@@ -110,7 +110,7 @@ class _ExudynStepper:
 
     @property
     def hold_centre(self) -> float:
-        """Half a step: the force at the end of a step is a mean about that time, taken at both ends."""
+        """A whole step: its force is the mean about its end, as both rules take the force at both ends."""
         return 1.0
 
     def advance(self, acceleration: Array) -> Steps:

@@ -274,7 +274,7 @@ def _warnings(data: mujoco.MjData) -> list[str]:
 
 
 def _depth(scene: Scene, settings: MujocoSettings) -> float:
-    """Depth of one contact under weight and prestress [m]: the share of the load on its spring."""
+    """Depth of one contact under weight and prestress [m], by the impedance of its spring."""
     time = settings.contact_time_constant / scene.unit_time
     return scene.pressing_gravity * time**2 * (1.0 - settings.impedance) / settings.impedance
 

@@ -138,8 +138,8 @@ def make_sampling(lifted: Callable[..., State], partial: Callable[..., tuple[Sta
     return Sampling(of_rest, of_uplift, of_step)
 
 
-_LEAST_STEP = 1e-200  # [s]; a shorter step is given up, whatever the cause
-_HAIR = 1e-6  # time in 1/p from an uplift to the next sample that is skipped: the tilt there is its square
+_LEAST_STEP = 1e-200  # [s]; a run that needs a shorter step has stalled
+_HAIR = 1e-6  # time in 1/p; an uplift nearer to the next sample begins there, short of a tilt of its square
 
 
 @jit

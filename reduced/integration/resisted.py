@@ -91,7 +91,7 @@ def _with_loss(combine: Callable[..., State]) -> Callable[..., State]:
 
 @jit
 def _with_least_spin(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
-    """State of the recess model before a step, its spin raised to the least one so that it keeps its sign."""
+    """State of the recess model before a step; over still ground with a least spin, which keeps its sign."""
     still = a[0] == 0.0 and a[1] == 0.0 and slope[0] == 0.0 and slope[1] == 0.0
     if not still or y[3] == 0.0:
         return y

@@ -182,7 +182,7 @@ def impact(simulate: Simulate) -> float:
 
     def peaks(trace: Trace) -> np.ndarray[Any, np.dtype[np.float64]]:
         maxima = trace.extrema[(trace.extrema[:, 3] > 0.0) & (trace.extrema[:, 1] > 5e-3), 1][:4] / CAN.alpha
-        return np.pad(maxima, (0, 4 - len(maxima)))  # a failed run counts as a total error
+        return np.pad(maxima, (0, 4 - len(maxima)))  # a missing peak counts as 0
 
     right = peaks(reduced.simulate(case, plane=0.0, restitution="momentum"))
     return float(np.median([np.abs(peaks(simulate(case, "flat", each)) - right)[1:].max() for each in DRAWS]))

@@ -133,7 +133,7 @@ def test_a_summary_uses_both_bounds_and_the_time_of_the_run(cylinder, make_trace
     summary = row(rest, 3.0)
     assert (summary["diverged"], summary["agreement_time"]) == (False, 10.0)  # within 1 % of alpha
     assert (summary["tolerance"], summary["reference_uplift_time"]) == (pytest.approx(7.5e-4, rel=1e-3), 2.0)
-    # a sine reaches a tenth of its peak at arcsin(0.1)
+    # a squared sine reaches a tenth of its peak at arcsin(sqrt(0.1))
     assert summary["left_tolerance"]
     assert summary["within_tolerance_until"] == pytest.approx(2.0 + math.asin(math.sqrt(0.1)), abs=SAMPLE)
     assert summary["predicted_until"] == 5.0

@@ -21,7 +21,7 @@ SLOW = 1e-4  # [s] of a step
 ENGINES = {name: engine(name) for name in available_engines()}
 
 
-# checks that every engine must pass, besides the groups skipped for a slow engine
+# checks that every engine must pass, from the groups that are skipped for a slow engine
 CONTRACT = tuple(
     each
     for group in ("rest", "invariance")
@@ -53,7 +53,7 @@ def test_an_installed_engine_passes_checks(name: str, group: str, monkeypatch: p
     monkeypatch.setattr(laws, "DIRECTIONS", 5)
     monkeypatch.setattr(laws, "SLENDERNESS", (0.1, 1.0))
     subject, chosen = ENGINES[name], ASKED[group]
-    if name not in standard_engines():  # first support, agreement groups of `check`
+    if name not in standard_engines():  # its first support, and the agreement that `check` tests
         subject = dataclasses.replace(subject, supports=subject.supports[:1])
         chosen = chosen[:1] if group == "agreement" else chosen
     results = [result for each in chosen if each.applies(subject) for result in each.run(subject)]

@@ -19,7 +19,7 @@ WINDOW = 15.0  # [s]
 # relative RMS on (6 m, 0.2) doubled, 6.4e-6 as measured
 AGREEMENT = 2e-5
 ROW = "El Centro to 15 s"  # of the README
-# steps of contact in which the base leaves the ground
+# number of steps of contact in which the base leaves the ground
 UPLIFT_STEPS = 2
 UPLIFT_DIRECTION = math.radians(1.0)
 # work from samples 0.01 s apart, relative to the largest energy; the reduced model shows 7e-7

@@ -365,7 +365,7 @@ def test_a_step_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_header_without_samples_is_refused(tmp_path: Path) -> None:
+def test_a_header_with_few_samples_or_noise_is_refused(tmp_path: Path) -> None:
     random = np.random.default_rng(1)
     # tables of .bbp announce no length
     for content in (each for name, each in FILES.items() if isinstance(each, str) and "bbp" not in name):

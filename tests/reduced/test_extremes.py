@@ -112,7 +112,7 @@ def test_a_pulse_far_shorter_than_the_motion_is_a_velocity_jump(size, time_step,
     acceleration[50:150, 0] = -2.0e3
     response = simulate(body, GroundMotion(acceleration, time_step), duration=1.0, sample_step=1e-3)
     p2, jump = response.source.problem.body.p2, 2.0e3 * 100 * time_step
-    # the restoring moment reduces it within the 2 ms of the pulse
+    # the restoring moment reduces it up to the sample at 2 ms
     slowed = p2 * math.sin(body.alpha) * (2e-3 - 50 * time_step)
     kick = p2 * math.cos(body.alpha) * jump / 9.81
     assert response.tilt_rate[2] == pytest.approx(kick * (1.0 - late) - slowed, rel=5e-4)

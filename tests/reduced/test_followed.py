@@ -69,7 +69,7 @@ def test_still_ground_after_the_record_changes_no_peak(model: str) -> None:
     assert later > 10
 
 
-def test_only_motion_without_a_later_maximum_is_followed() -> None:
+def test_motion_past_its_maximum_over_still_ground_or_at_rest_is_not_followed() -> None:
     released = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.1)
     weak = Case(PIER, el_centro_1940().scaled(0.3))
     for case in (released, weak):

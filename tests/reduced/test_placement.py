@@ -152,7 +152,7 @@ def test_place_and_twist_on_flat_ground_are_kept_over_a_rest(strength: float, tu
     assert abs(both.twist[last] - twist) < 0.5 * abs(twist)
     assert math.hypot(*rolled) < 1.01 * b * abs(both.twist[last] - twist) + 1e-12
     assert math.hypot(*place[:2]) > 1e-6 * b
-    # after the second uplift it moves as after the first, from its new place
+    # after the second uplift it moves as in the second shock alone, from its new place
     count = len(second)
     later = both.centre_of_mass[-count:] - [*place[:2], 0.0]
     np.testing.assert_allclose(later, alone.centre_of_mass, atol=1e-8)

@@ -65,7 +65,7 @@ def test_rolling_resistance_loses_the_integral_of_the_normal_force(kind: str, sp
     load, at_pass = 2.0 * b * lost_by_load(body, tilt) / potential, 4.0 * body.mu * b * b / body.A
     if kind == "h = 2b":
         assert (round(load, 3), round(at_pass, 3)) == (2.262, 0.608)
-    if spin:  # the pass multiplies the speed by sqrt(A/J)
+    if spin:  # in the pass the speed rises by the factor sqrt(A/J)
         longer = quad(lambda x: math.sqrt(x * x + body.A / body.J * (1.0 - x * x)), 0.0, 1.0)[0]
         assert longer == pytest.approx(1.0577, abs=1e-4)
         at_pass *= longer
@@ -74,7 +74,7 @@ def test_rolling_resistance_loses_the_integral_of_the_normal_force(kind: str, sp
     trace = reduced.simulate(case, rtol=1e-12, sample_step=2e-4 / body.p)
     maxima = trace.extrema[trace.extrema[:, 3] > 0.0]
     lost = np.diff(np.interp(maxima[:2, 0], trace.time, trace.energy_lost))[0] / trace.energy[0]
-    # error of first order in SMALL, and the energy lost is read at samples at rest
+    # error of first order in SMALL, and the energy lost is interpolated between samples next to rest
     assert lost / SMALL == pytest.approx(load + at_pass, rel=2e-4 if spin else 3e-5)
 
 

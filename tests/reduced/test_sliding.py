@@ -48,7 +48,7 @@ def test_circling_ground_slides_at_constant_speed() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_rotated_mirrored_and_scaled_ground_gives_the_same_slide(seed: int) -> None:
+def test_slide_is_rotated_mirrored_and_scaled_with_its_ground(seed: int) -> None:
     samples, friction = shaking(seed)
     trace = slide(samples, 0.02, friction)
     peak = trace.peak_displacement

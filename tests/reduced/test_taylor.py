@@ -59,7 +59,7 @@ def test_the_series_solve_the_equations(body, y, a, slope):
             assert rate == pytest.approx(expected, rel=LEFT_OUT, abs=LEFT_OUT * abs(first))
 
 
-def test_a_longer_step_takes_a_higher_order():
+def test_a_smaller_tolerance_or_tilt_takes_a_higher_order():
     body = body_of(Cylinder(semidiagonal=6.0, tan_alpha=0.2), 9.81)
     a, slope = (1.0, -0.5, 0.0), (30.0, 10.0, 0.0)
 

@@ -137,7 +137,7 @@ def test_forces_balance_momentum_of_column_and_slab(gamma: float) -> None:
         assert np.abs(slab).max() < 2e-4 * G
 
 
-def test_tendon_yield_is_reported_at_its_first_tilt() -> None:
+def test_tendon_yield_is_reported_from_the_time_at_which_it_begins() -> None:
     motion = rw.el_centro_1940().scaled(2.5)
     free = reduced.simulate(rw.Case(PIER, motion, tendon=Tendon(prestress=0.2, stiffness=4.0)), rtol=1e-10)
     force = 0.2 + 0.6 * (free.peak_tendon_force - 0.2)
@@ -169,7 +169,7 @@ def test_the_verdict_at_a_balance_has_the_acceleration_of_the_model(
 @pytest.mark.parametrize("slab", [0.0, 1.0])
 @pytest.mark.parametrize("tan_alpha", [1e-1, 1e-3])
 def test_a_slender_tied_column_moves_as_a_larger_free_one(tan_alpha: float, slab: float) -> None:
-    """Linear couple: the tendon raises the height by 1 + n p0/w and lowers the slope by a share."""
+    """Linear couple: a tendon multiplies its value upright by 1 + n p0/w and lowers its slope by a share."""
     prestress, share = 0.5, 0.4
     gaps, w = (2, 1.0 + 2.0 * slab) if slab else (1, 1.0)
     tendon = Tendon(prestress=prestress, stiffness=share * w / (gaps**2 * tan_alpha))

@@ -115,7 +115,7 @@ def test_uplift_is_continuous_at_a_sample_time():
         assert late.peak_tilt == pytest.approx(at.peak_tilt, rel=1e-5)
 
 
-def test_a_later_uplift_takes_the_azimuth_nearest_to_the_last():
+def test_a_later_uplift_takes_the_branch_of_the_angle_nearest_to_the_last():
     motion = el_centro_1940().scaled(0.8)
     response = reduced.simulate(Case(PIER, motion), rest_tilt=0.01)
     moving = ~np.isnan(response.rolling_angle)
