@@ -38,7 +38,7 @@ _UNITS = {"-": "", "weights": " W", "weights × b": " W b"}
 # moving part at the top of a frame and of a cylinder; supporting part of a recess and of flat ground
 _TOP = {True: "slab", False: "top"}
 _BELOW = {True: "recess", False: "ground"}
-# conditions stated with the input and not as warnings
+# modes of motion stated with the input and not as warnings
 _PLAIN = ("mode.rest", "mode.rocks", "mode.rocks_in_one_plane", "mode.no_friction_given")
 _OPENING = ("mode", "vertical", "rest", "steel")
 # options of an advice that other commands do not have
@@ -229,7 +229,7 @@ def _demand_columns(advice: Advice) -> Iterator[list[str]]:
 
 
 def _round(value: float) -> str:
-    """Force with three digits and without a power of ten."""
+    """Force with three digits, from 1 up without a power of ten."""
     return f"{float(f'{value:.3g}'):.10g}" if value >= 1.0 else number(value)
 
 

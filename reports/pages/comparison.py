@@ -122,7 +122,7 @@ _USUAL = (*_HEADLINE, *_SUPPORTS, *(f"comparison.{cause}" for cause in _CAUSES))
 
 
 def headline(findings: Sequence[Finding]) -> str:
-    """Ground motion, and agreement times of the runs with the model of their support."""
+    """Mode of motion, and agreement times of the runs with the model of their support."""
     return " ".join(statement(each) for each in findings if each.key in _HEADLINE)
 
 
@@ -152,7 +152,7 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
     yield turn_picture(view, f"turns-{place}", notes=not many)
     if view.budgets:
         yield from filter(None, [budget_picture(view, f"shares-{place}")])
-        # omitted without differences, as they take a megabyte
+        # of many cases only differences worth explaining: all would take a megabyte
         yield from filter(
             None, [parts_picture(view, f"parts-{place}", above=WORTH_EXPLAINING if many else 0.0)]
         )
@@ -240,7 +240,7 @@ def external_rows(summary: pd.DataFrame) -> list[Row]:
             "uplift": row.uplift_time_difference if math.isfinite(row.uplift_time_uncertainty) else None,
             "direction": _degrees(row.uplift_direction_difference, row.uplift_direction_uncertainty),
             "direction_uncertainty": _degrees(
-                # agreement beyond half a turn means nothing
+                # at half a turn nothing is known of a direction: no more is stated
                 min(row.uplift_direction_uncertainty, math.pi),
                 row.uplift_direction_uncertainty,
             ),
@@ -260,7 +260,7 @@ def _degrees(angle: float, uncertainty: float) -> float | None:
 
 
 def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
-    """One line for each column of the summary, and its table columns, one per row."""
+    """One line for each column of the summary, and the columns of that table, one per row of the summary."""
     listed = list(rows_of(rows))
     lines: list[Row] = [
         {

@@ -39,7 +39,7 @@ def failure(facts: Iterable[Diagnostic]) -> str:
 
 
 def code_counts(codes: Iterable[Iterable[str]]) -> list[str]:
-    """Number of runs with each diagnostic code; failed runs excluded."""
+    """Number of runs with each diagnostic code, without the codes of failures."""
     counts = Counter(code for of_run in codes for code in set(of_run))
     shown = [code for code in CODES if code not in FAILURES and counts[code]]
     lines = {code: lines_of(f"diagnostic.{code}") for code in shown}

@@ -241,7 +241,7 @@ def _unfold(parts: Iterable[Part], details: bool) -> Iterator[str | Table]:
 
 
 def _print_words(console: Console, text: str) -> None:
-    """Print Markdown; a command at the end of a line is never broken."""
+    """Print Markdown; a command at the end of a line stays one for a shell."""
     words, *rest = _COMMAND.split(text)
     for lead, command, more in zip(rest[::3], rest[1::3], rest[2::3], strict=True):
         shown = _as_printed(console, f"{words}{lead}")

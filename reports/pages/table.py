@@ -84,7 +84,7 @@ def interval_form(form: str, *numbers: object) -> str:
     places, shown = 1 - math.floor(math.log10(half)), int(form[1:-1])
     if form.endswith("f"):
         return f".{min(max(places, 0), shown)}f"
-    # two digits of a hundred need no power of ten
+    # two digits of a hundred would take a power of ten
     whole = shown if 100.0 <= max(abs(low), abs(high)) < math.inf else 0
     return f".{max(min(places + 1 + math.floor(math.log10(abs(value))), shown), whole)}g"
 

@@ -26,7 +26,7 @@ _EXACT = 1e-11  # tolerance of the models
 
 
 def measure(engine: str, *, sweep: bool = True) -> dict[str, Any]:
-    """Accuracy figures by name; for failures the reason.
+    """Accuracy figures by name; NaN for failures, with the reason among the remarks.
 
     The uplift sweep, which takes most of the time, may be left out.
     """
