@@ -122,7 +122,7 @@ def test_small_fragility_writes_files_and_redraws_its_page(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_cloud_uses_the_chosen_intensity_measure(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # of a page that is drawn the test above tells
+    monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # the test above draws a page
     options = ["--synthetic", "8", "--scale", "3,6", "--measure", "pgv", "--model", "worse-plane"]
     assert call("fragility", *options, "--resamples", "20", "--workers", "1", "--out", str(tmp_path)) == 0
     assert "as they are" in " ".join(capsys.readouterr().out.split())

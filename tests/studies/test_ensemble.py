@@ -75,7 +75,7 @@ def made_up(job: Job, peak: float, outcome: str = "stands") -> Trace:
     return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)
 
 
-def test_failed_runs_are_counted_named_and_excluded_from_members(monkeypatch):
+def test_failed_runs_are_counted_named_and_excluded_from_statistics(monkeypatch):
     def simulate(job: Job) -> Trace:
         if job.label == "flat-ground model" and job.case.name.endswith("#2"):
             return made_up(job, math.nan, "failed")
