@@ -452,7 +452,7 @@ def test_scaled_records_are_nested():
     assert weaker_factors(math.inf) == []
 
 
-def test_top_and_slab_demands_match_the_traces():
+def test_top_displacement_matches_the_traces():
     motion = el_centro_1940().scaled(0.9)
     frame = reduced.simulate(Case(WobblingFrame(PIER, slab_mass_ratio=2.0), motion))
     moved = np.linalg.norm(frame.slab_displacement[:, :2], axis=1)
@@ -701,7 +701,7 @@ def test_leading_rest_does_not_change_the_predicted_agreement() -> None:
 
 @pytest.mark.slow
 def test_verification_values_equal_the_comparison_summary_row() -> None:
-    """A run on flat ground, with another reference than its own model, and a failed one."""
+    """A run on flat ground, with another reference than its own model."""
     shaken, run = Case(PIER, el_centro_1940(), duration=5.0), Run("mujoco", "flat")
     row = comparison(shaken, runs=[run], reference=Run(None, "recess"), workers=1).summary.iloc[0]
     verified, prediction, trace = verify_run(shaken, run, reduced.simulate(shaken))

@@ -288,7 +288,7 @@ class Case:
         if rates:  # an unscaled spin changes each run a little
             yield (in_time_scale(sum(rates) / len(rates)),)
         yield from (one.changes for one in mistakes)
-        # peaks only can reveal unit errors and nothing else
+        # from peaks alone only a wrong unit can be told
         yield from ((change,) for change in readings(tables[names[0]].values))
 
     def mistakes(self, tables: Mapping[str, Table], motions: Motions) -> tuple[Mistake, ...]:
