@@ -39,7 +39,7 @@ def changed(certificate: Path, folder: Path) -> Path:
     return path
 
 
-def test_certificate_lists_verified_and_unverified_claims(certificate: Path) -> None:
+def test_certificate_lists_verified_claims_and_what_is_not_covered(certificate: Path) -> None:
     stored = json.loads(certificate.read_text())
     assert len(stored["fingerprint"]) == 14
     assert {claim["status"] for claim in stored["claims"]} == {"verified"}

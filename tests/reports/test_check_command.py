@@ -71,7 +71,7 @@ def test_passing_groups_are_summarised_in_every_output(
     assert [path.name for path in tmp_path.iterdir() if path not in paths] == []
 
 
-def test_check_prints_only_failures_and_exits_with_1(
+def test_failed_checks_are_printed_singly_and_exit_with_1(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(groups, "baseline_subjects", lambda: [groups.subjects.reduced_model()])

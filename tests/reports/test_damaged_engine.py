@@ -101,7 +101,7 @@ def test_support_of_a_damaged_engine_alone_is_refused(damaged, monkeypatch, caps
     assert [line for line in lines if "rockwobble: " in line] == [f"rockwobble: engine {LINE}"]
 
 
-def test_check_counts_unchecked_engines(damaged, capsys):
+def test_check_states_why_an_engine_is_not_checked(damaged, capsys):
     call("check", "--only", "rest")
     assert REASON in " ".join(capsys.readouterr().out.split())
 

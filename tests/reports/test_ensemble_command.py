@@ -85,7 +85,7 @@ def test_findings_state_the_verdict_and_the_numbers_of_each_main_pair():
     assert "ratio_detectable" not in pair
     assert numbers(made_up(), "different")["names"] == ("mujoco recess with recess model",)
     assert keys(made_up()) == {"different", "pair", "significant", "overturning_alike"}
-    # significant differences may be equivalent, and others not
+    # significant differences may be equivalent, others need not be
     assert keys(made_up(1.001)) == {"equivalent", "pair", "significant", "overturning_alike"}
 
 
@@ -147,7 +147,7 @@ def test_small_ensemble_writes_files_and_redraws_its_page(tmp_path, in_this_proc
 
 
 def test_synthetic_motions_are_the_members(tmp_path, in_this_process, monkeypatch, capsys):
-    monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # of a page that is drawn the test above tells
+    monkeypatch.setattr(Page, "files", lambda *_, **__: {})  # the test above draws a page
     options = ["--synthetic", "2", "--peak", "1.5", "--duration", "2", "--engine", "none", "--seed", "7"]
     assert call("ensemble", *options, "--out", str(tmp_path)) == 0
     assert "synthetic ground motions, seed 7, with peaks of 1.5 g tan alpha" in capsys.readouterr().out

@@ -77,7 +77,7 @@ def words(content: bytes) -> str:
     )
 
 
-def test_svg_is_reproducible_and_has_a_description():
+def test_svg_is_reproducible_and_contains_its_words():
     content = svg(lines())
     assert content == svg(lines())
     for said in ("time [s]", "tilt / α [-]", "run 0", "band", "strong", "until here", "a step of 0.0025 s"):

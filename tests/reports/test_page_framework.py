@@ -108,7 +108,7 @@ LACKS = {
 
 
 @pytest.mark.parametrize("output", SAYS)
-def test_all_outputs_of_a_page_have_equal_content(page, output):
+def test_each_output_of_a_page_has_its_content(page, output):
     files = page.files()
     assert set(files) == {"report.md", "report.html", "tilt.svg"}
     text = {

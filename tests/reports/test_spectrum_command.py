@@ -61,7 +61,7 @@ def test_spectrum_command_prints_writes_and_redraws_its_results(tmp_path: Path, 
 
 @pytest.mark.slow
 def test_spectrum_command_accepts_any_record(tmp_path: Path, monkeypatch):
-    monkeypatch.setattr(Page, "files", lambda _, **__: {})  # of one that is drawn other tests tell
+    monkeypatch.setattr(Page, "files", lambda _, **__: {})  # other tests draw a page
     time = np.arange(0.0, 3.0, 0.02)
     for name, phase in (("x.csv", 0.0), ("y.csv", 1.0)):
         rows = "\n".join(f"{t:.2f}, {0.3 * np.sin(5.0 * t + phase) * (t < 2.0):.6f}" for t in time)
