@@ -116,7 +116,7 @@ def couple_power(poses: Steps, after: Steps, forces: Sequence[tuple[float, Array
     poses, after : Steps
         As for `kinematics`.
     forces : sequence of (float, ndarray)
-        For each end that rolls, the mass whose weight the force is in, over the driven mass, times gravity
+        For each end that rolls, the mass whose weight the force is in, over the effective mass, times gravity
         [m/s^2], and the force on it (3, n) [weights].
     length : float
         Length of the couple [m].

@@ -28,7 +28,7 @@ class Kinematics:
     tilt, tilt_rate, azimuth, twist : ndarray
         The azimuth is phi between -pi and pi, the twist as the quaternion tells it: see `unwrap_twist`.
     energy : ndarray
-        Kinetic and potential, what a restraint stores included, per unit of the driven mass, zero standing
+        Kinetic and potential, what a restraint stores included, per unit of the effective mass, zero standing
         [m^2/s^2].
     depth : ndarray
         Depth of the lowest point of the rim below the ground [m].

@@ -398,7 +398,7 @@ def diagnostics(
         yield Diagnostic(code="undecided", time=end * unit_time)
     if recorder.unsolved:
         yield Diagnostic(code="solver", size=recorder.unsolved, bound=recorder.looks)
-    if slides:  # a slide never uplifts, and where contact trembles, its mode tells
+    if slides:  # a slide never uplifts; where contact trembles, its mode says so
         return
     if recorder.uplift is not None and recorder.missing_load > EARLY:
         yield Diagnostic(

@@ -56,7 +56,7 @@ class _OfTilts(Protocol):
 
 
 def _of_tilts(function: Callable[..., Array]) -> _OfTilts:
-    """Make a function of an array accept one tilt, and refuse tilts at or beyond the balance."""
+    """Make a function of an array accept one tilt, and refuse tilts not between 0 and the balance."""
 
     @wraps(function)
     def wrapper(

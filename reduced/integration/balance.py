@@ -59,7 +59,7 @@ def turns_back(body: Body, acceleration: float) -> bool:
 
 @jit
 def turn_since(rows: Log, since: float, last: float) -> tuple[float, float, float]:
-    """Rows of the log from a time [s] to the first maximum after it.
+    """Summary of the log from a time [s] to the first maximum after it.
 
     Returns
     -------

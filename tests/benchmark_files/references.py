@@ -184,7 +184,7 @@ def _after_impact(name: str, run: BenchmarkRun, trace: Sampled) -> dict[str, flo
 
 
 def _quantity(name: str, run: str, by: dict[str, float]) -> dict[str, Any]:
-    """Entry of reference.json; the most exact method gives the value."""
+    """Entry of reference.json; the first known method gives the value."""
     values = list(by.values())
     apart = max(values) - min(values)
     unit = {"turn": "rad", "maximum": "alpha", "kept": "share"}.get(name.rpartition("_")[0], "s")

@@ -115,7 +115,7 @@ Used = tuple[float, Mapping[str, Any]]  # step [s] and settings of a run
 
 
 def simulator(engine: str, name: str = "", value: Any = None, used: list[Used] | None = None) -> Simulate:
-    """Runs of an engine at a fraction of its default step, with one changed setting.
+    """Runs of an engine at its default step, or a share of it, with one setting changed, if any.
 
     The settings of each run are appended to `used`.
     """
@@ -204,7 +204,7 @@ def error_of(solution: str, simulate: Simulate) -> float:
 
 
 def settings_table(engine: str, names: Sequence[str] = ()) -> Iterator[dict[str, str]]:
-    """Rows of an engine, default settings first; settings equal to the default are not repeated."""
+    """Rows of an engine, default settings first; values equal to the default are marked and not run."""
     used: dict[str, list[Used]] = {solution: [] for solution in SOLUTIONS}
     defaults = {each: f"{error_of(each, simulator(engine, used=used[each])):.1e}" for each in SOLUTIONS}
 

@@ -59,7 +59,7 @@ def equal_columns() -> Iterator[Row]:
 
 
 def imperfect() -> Iterator[Row]:
-    """Rows of three and four slightly unequal columns, in height or position."""
+    """Rows of three and four columns with imperfections of a column, of their places, slab or friction."""
     kinds: Mapping[str, Mapping[str, float]] = {
         "ideal": {},
         "one longer by 1 give": {"longer": 1.0},

@@ -166,7 +166,7 @@ def _stated(name: str, centres: list[Array], over: list[Array] | None, motions: 
 
 
 def on_flat_ground(motions: Sequence[GroundMotion], engine: str) -> Iterator[dict[str, float | str]]:
-    """Yield residual displacements of the pier by prestress: medians over motions that it stands."""
+    """Yield residual displacements of the pier by prestress: medians over runs in which it stands."""
     scale = FLAT_LEVEL * 9.81 * PIER.tan_alpha
     for prestress in PRESTRESS:
         tendon = Tendon(prestress=prestress) if prestress else None

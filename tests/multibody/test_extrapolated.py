@@ -122,14 +122,14 @@ def test_a_landing_with_every_step_alike_is_no_agreement() -> None:
 
 
 def left_to_chance(code: str, time: float) -> dict[str, Any]:
-    """Trace that is known until this time: contact drives it, or its next swing ends too low."""
+    """Fields of a trace that is known until this time: contact drives it, or its next swing ends too low."""
     if code == "energy":
         return {"facts": (Diagnostic(code=code, time=time),)}
     return {"extrema": np.array([[time, 0.1, 0.0, 1.0], [time + 0.1, 1e-7, 0.0, -1.0]])}
 
 
 @pytest.mark.parametrize("code", ["unresolved_pass", "energy"])
-def test_after_an_unresolved_pass_it_is_the_finest_run(code: str) -> None:
+def test_after_an_unresolved_pass_or_an_energy_error_it_is_the_finest_run(code: str) -> None:
     runs = three(lambda step: 1e-5 * step * np.sin(0.1 * np.arange(100)))
     runs[-1] = replace(runs[-1], **left_to_chance(code, 0.5))
     limit = extrapolation(runs, ALPHA)

@@ -124,7 +124,7 @@ def shock(count: int, strength: float, azimuth: float, turning: float) -> np.nda
 
 
 def shocks(strength: float, turning: float) -> tuple[np.ndarray, np.ndarray]:
-    """Two shocks, after one of which it comes to rest, and after the other uplifts again."""
+    """Two motions: after the first it comes to rest, and the second uplifts it again."""
     tail = np.vstack([shock(100, 0.3, 1.0, 5.0), np.zeros((50, 3))])
     return np.vstack([shock(60, strength, 0.4, turning), tail]), np.vstack(
         [shock(80, 1.6, -2.0, 1.5), np.zeros((60, 3))]
