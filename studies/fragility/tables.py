@@ -421,7 +421,7 @@ _MOST_NUMBERS, _FEWEST = 150_000, 100
 
 
 def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFrame:
-    """Dispersion of one method by each intensity measure, and its ratio to the smallest, from equal samples.
+    """Dispersion of one method by each intensity measure, and its ratio to the least, of the same resamples.
 
     The runs are the same for every measure: from where no motion overturns to where nearly all do, so that
     it matters little by which measure their levels were chosen.
