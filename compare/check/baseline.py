@@ -290,7 +290,7 @@ def write_certificate(certificate: Mapping[str, object], path: Path) -> None:
 
 
 def claims_of(results: Iterable[Result]) -> tuple[list[dict[str, object]], list[str]]:
-    """Claims supported by results, and the motions that they do not cover.
+    """Claims supported by results, and the points that they do not cover.
 
     A claim is verified, against exact solutions, or cross-validated, between independent formulations; none
     is validated, against an experiment.

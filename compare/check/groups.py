@@ -85,7 +85,7 @@ class Check:
                     "rtol",
                     "stepper",
                     FILES,
-                }:  # codes of failures, which a reduced model or a trajectory read here must not have
+                }:  # a reduced model, an engine and a trajectory read here must not raise
                     yield at_most(f"{name}, {support}", math.nan, ENDS, note=words)
                 else:
                     yield not_run(f"{name}, {support}", words)
@@ -182,7 +182,7 @@ TITLES = {
 }
 
 
-Part = tuple[Subject, str, Check]  # subject, its group, and a check
+Part = tuple[Subject, str, Check]  # subject, group, and a check of this group
 
 
 def run_checks(
@@ -429,7 +429,7 @@ def with_cause(subject: Subject, results: Sequence[Result]) -> list[Result]:
     cases = [RELEASE, agreement.LOW_RELEASE, *([agreement.RAMP] if UPLIFT in subject.features else [])]
     try:
         cause = likely_cause(subject, support, cases)
-    except Exception:  # exceptions of a model are the results of its checks
+    except Exception:  # exceptions of a model are reported by its checks
         cause = ""
     return [dataclasses.replace(each, cause=cause) if lacks(each) else each for each in results]
 

@@ -167,7 +167,7 @@ def _with_changes(motion: Motion, changes: Sequence[Change]) -> Motion:
 
 
 def readings(values: Values) -> Iterator[Change]:
-    """Mistakes in units, order and vertical axis of columns, with the motions without them."""
+    """Mistakes in units, order and vertical axis of columns, with their corrections."""
 
     def in_unit(code: str, concerns: str, names: Sequence[str], factor: float) -> Change:
         def correct(given: Values) -> Values:

@@ -96,7 +96,7 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Row:
     explained = next(explanations(source.table.values, read, model), None) if residual.differs_in else None
     mistakes: tuple[Mistake, ...] = explained.mistakes if explained else ()
     left = explained.left if explained else residual
-    if residual.tilt.differs and left.tilt.differs:  # judged before passes
+    if residual.tilt.differs and left.tilt.differs:  # a loss is sought before passes are blamed
         lost, without = losses(motion, model, reference, case)
         mistakes, left = (*lost, *mistakes), without if len(lost) > 1 and not mistakes else left
     if mistakes:

@@ -202,7 +202,7 @@ def signed_rank_p(logarithms: Array) -> float:
     differs = logarithms[logarithms != 0.0]
     _, place, ties = np.unique(np.abs(differs), return_inverse=True, return_counts=True)
     ranks = (2 * np.cumsum(ties) - ties + 1)[place]  # twice the mean ranks, which are whole or a half
-    # number of sign choices with each sum of ranks, under random signs
+    # probability of each sum of ranks, under random signs
     sums = np.zeros(ranks.sum() + 1)
     sums[0] = 1.0
     for rank in ranks:

@@ -314,7 +314,7 @@ def default_runs(
     for support in MODELLED if supports is None else supports:
         able = [engine for engine in engines if support in find_engine(engine).supports]
         if supports is None and support not in usual:
-            # a named engine without this support is refused, not left out
+            # a named engine with no other support is refused, not left out
             others = [] if unnamed else able
             able = [engine for engine in others if not set(usual) & set(find_engine(engine).supports)]
         if unnamed and supports is not None and not able:
@@ -407,6 +407,6 @@ def models_of(case: Case, run: Run) -> tuple[Run, ...]:
 
 
 def own_model_of(case: Case, run: Run) -> Run:
-    """Reduced model of an exact engine for this run."""
+    """Reduced model that an exact engine would follow in this run."""
     nearest = models_of(case, run)[-1]
     return nearest if nearest.is_planar and not run.is_model else run.own_model

@@ -96,7 +96,7 @@ def package_versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
 
 
 def other_versions(then: Mapping[str, str], engine: str | None = None) -> tuple[str, ...]:
-    """Versions that differ from `then`, as "numpy 1.26 -> 2.0"; of the engines only that in use."""
+    """Versions that differ from `then`, as "numpy 1.26 -> 2.0"; of the engines only that of `engine`."""
     now, engines = package_versions(), engine_packages()
     for name, package in engines.items():
         if name != engine:

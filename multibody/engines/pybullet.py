@@ -209,7 +209,7 @@ class _PybulletStepper(Leapfrog):
         return self._add_body(
             1.0,
             outline,
-            # the engine multiplies the coefficients of both bodies
+            # that of a pair is that of each body times the sliding friction of the other
             rollingFriction=scene.rolling_resistance / _friction_of_each(friction),
             localInertiaDiagonal=[shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia],
         )

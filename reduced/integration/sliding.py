@@ -36,7 +36,7 @@ Force = tuple[float, float, float, float]  # f at the beginning of a sample and 
 
 _STILL = 1e-11  # speed that counts as zero, over the speed that gravity gives in a sample
 _STEADY = 0.1  # share of n - |f| by which it may change while a body stops
-_SOON = 0.25  # power of the tolerance, 6e-4 of 1e-13: share of |f| by which f may change in a short start
+_SOON = 0.25  # power of the tolerance, 6e-4 of 1e-13: share of |f| by which f may change in a short time
 # Low is a speed at which the direction lags that of f by so many radians at most; K over |f| of such a time,
 # over the root of the share above; and by how much the direction may be off that lag [rad], to which it is
 # drawn within |v|/|f|.
@@ -203,7 +203,7 @@ def _rotate(c: NDArray[np.float64], order: int, end: float) -> float:
 @jit
 def _creep(f: Force, n0: float, n1: float, time: float, left: float, v0: float,
            soon: float) -> tuple[float, float, float, float, float, float]:  # fmt: skip
-    """A short start from `time` on, with f almost constant: its length, then x, y, speed, direction and path.
+    """A short time from `time` on, with f almost constant: its length, then x, y, speed, direction and path.
 
     It begins at rest, or at a low speed v0 in a direction that follows that of f; a speed of 0 is a stop.
     """
