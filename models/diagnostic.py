@@ -143,7 +143,7 @@ class Diagnostic(CompactRepr):
 
     @property
     def meaning(self) -> str:
-        """Meaning of the code in words."""
+        """The diagnostic in words."""
         return repr(Findings([self.finding()]))
 
 

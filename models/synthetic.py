@@ -70,7 +70,7 @@ def pulse(
         raise ValueError(f"start must leave at most {MOST_STILL:g} samples of still ground, got {start!r} s")
     count = round(SAMPLES_PER_PERIOD * _LENGTHS[kind])
     step = period / SAMPLES_PER_PERIOD
-    # begins at a sample, so that its first slope is exact
+    # begins at a sample, so that its beginning stays sharp
     still = round(start / step)
     phase = 2.0 * math.pi * np.arange(count + 1) / SAMPLES_PER_PERIOD
     shape = np.cos(phase) if kind == "one-cosine" else np.sin(phase)

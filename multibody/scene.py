@@ -148,7 +148,7 @@ REFERENCE_TIME_STEP = 1e-4  # [s] at the reference size
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Units of the reference scene in SI units.
+    """Units of the reference scene in metres and seconds of the user.
 
     Attributes
     ----------

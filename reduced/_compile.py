@@ -115,7 +115,7 @@ def _keep_by_content(kept: Any, digest: str) -> None:
     folder, base = Path(kept.cache_path), kept._impl.filename_base
     name = f"{base}.{digest[:16]}"
     kept._cache_file = IndexDataCacheFile(str(folder), name, digest)  # type: ignore[no-untyped-call]
-    # a global name holds the line number of the function
+    # the name of a file holds the line number of the function
     for path in folder.glob(re.sub(r"-\d+\.", "-*.", base) + ".*nb[ic]"):
         if not path.name.startswith(name):
             with suppress(OSError):  # a file of another user, or removed meanwhile
@@ -150,7 +150,7 @@ def _without_collector() -> Iterator[None]:
     gc.disable()
     linalg.ensure_blas = lambda: None
     try:
-        import_module("numba.np.arraymath")  # it starts the collector when it is imported
+        import_module("numba.np.arraymath")  # it asks for SciPy when it is imported
         yield
     finally:
         linalg.ensure_blas = asks

@@ -288,7 +288,7 @@ def _require_same_clock(components: Sequence[Component]) -> None:
 def _equally_long(
     components: Sequence[Component], lengths: str | None
 ) -> tuple[list[Component], tuple[str, ...]]:
-    """Components of one length, and a note of the cut.
+    """Components of one length, and a note of the change.
 
     Parameters
     ----------

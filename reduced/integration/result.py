@@ -50,7 +50,7 @@ class IntegrationResult(NamedTuple):
 
     status: int
     end: float  # end of the run [s]; later than the duration only where it overturns after it
-    followed_until: float  # end of the motion followed after the duration [s]; NaN if it stood
+    followed_until: float  # end of the motion followed after the duration [s]; NaN if none was
     peak: float  # largest tilt up to that time [rad]
     uplift_time: float  # first uplift, or 0 for a release [s]; NaN if there is none
     uplift_direction: float  # rolling angle there [rad]

@@ -187,7 +187,7 @@ def test_the_finer_runs_end_with_the_agreement(engine):
         [refined], lambda wanted: jobs.extend(wanted) or [lost_trace(case, refined.run, "stop")] * len(wanted)
     )
     for level, job in enumerate(jobs, 1):
-        assert job.case.length == pytest.approx(0.81)  # at most the agreement of the traces, in whole samples
+        assert job.case.length == pytest.approx(0.81)  # agreement of the traces, up to a whole sample
         assert job.run.time_step == pytest.approx(trajectory.time_step * 0.5**level)
 
 

@@ -105,7 +105,7 @@ def test_a_right_trajectory_follows_its_model_without_mistakes(save, number):
             table = samples(name, kind, model=model, sample_step=sample_step, noise=noise)
             trajectory = read_trajectory(save(table), case)
             assert judged(trajectory, response(name, model), case).differs_in == (), (kind, sample_step)
-            # against the model of another cylinder: a difference, but no mistake of the file
+            # the model of the other support may differ, but by no mistake of the file
             assert judged(trajectory, response(name, other), case).mistakes == (), (kind, sample_step)
 
 

@@ -15,7 +15,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 # RMS(difference)/RMS(tilt) from uplift to 15 s at h = 1e-4 s: 1.7e-4 and 3.1e-4 in MuJoCo, 2.6e-4 and 8.3e-4
 # in Bullet. The budget is twice that: any other step, setting or version lands elsewhere in that range.
 TRACE = {"mujoco": 1e-4, "pybullet": 1e-4, "dart": 1e-4, "drake": 1e-3}
-# order in the step: 0.07 over sixteen bodies and records; 2 would do
+# in steps: 0.07 over sixteen bodies and records; 2 would do
 UPLIFT_STEPS, UPLIFT_ANGLE = 0.2, np.radians(0.01)
 
 

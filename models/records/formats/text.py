@@ -29,7 +29,7 @@ from ..units import stated_unit, unit_of
 
 NAME, VALUES = "columns", "values without times"
 _AXES: tuple[Direction, ...] = ("x", "y", "z")
-_LEAST_COUNT, _LARGEST_STEP = 10, 0.1  # least count, largest step [s] before the values
+_LEAST_COUNT, _LARGEST_STEP = 10, 0.1  # samples and step [s] stated before the values; of fewer it is chance
 _MANY_DIGITS = re.compile(r"(?<![\d.])\d{17}")  # more than a double holds: whole numbers that touch
 _EPOCH = 1e6  # [s], 11 days: times since 1970 are later, times of a record earlier
 _QUANTITIES = ("acceleration", "velocity", "displacement")
