@@ -146,11 +146,13 @@ def _without_collector() -> Iterator[None]:
     Nor is SciPy's linear algebra, which no kernel calls, imported to see whether it is there: a tenth of a
     short command.
     """
-    collects, asks = gc.isenabled(), linalg.ensure_blas
+    collects = gc.isenabled()
+    asks: Any = getattr(linalg, "ensure_blas", None)  # of the inside of numba, which may change
     gc.disable()
     linalg.ensure_blas = lambda: None
     try:
-        import_module("numba.np.arraymath")  # it asks for SciPy when it is imported
+        with suppress(ImportError):
+            import_module("numba.np.arraymath")  # it asks for SciPy when it is imported
         yield
     finally:
         linalg.ensure_blas = asks
